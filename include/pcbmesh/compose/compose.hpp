@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "pcbmesh/base/diagnostics.hpp"
+#include "pcbmesh/board/board.hpp"
+#include "pcbmesh/model/model.hpp"
+#include "pcbmesh/study/study.hpp"
+
+namespace pcbmesh::compose {
+
+/// Board and study -> the domain to be meshed.
+///
+/// Slabs bottom to top: air below, the stackup reversed (solder mask left out and announced), air above. z = 0 is the bottom
+/// of the lowest board layer. Copper gaps on outer layers are air, on inner layers the neighbouring prepreg or core.
+/// Bodies: domain, board, one per (copper layer, net) with copper, unplated holes, and one barrel per (span, net).
+/// Plated holes are filled with copper of their net through their span (docs/architecture.md, "Drills").
+/// A region keeps all copper inside its box; rings are clipped to a slightly larger box first, which bounds the cost,
+/// and the domain body cuts exactly.
+///
+/// @throws Error name_unknown (304) with near misses, region_empty (305), outline_invalid (302), study_invalid (102).
+/// @cost O(shape vertices).
+[[nodiscard]] model::Model compose(const board::Board& board, const study::Study& study, Diagnostics& diagnostics);
+
+}  // namespace pcbmesh::compose

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "pcbmesh/base/diagnostics.hpp"
+#include "pcbmesh/base/progress.hpp"
+#include "pcbmesh/base/units.hpp"
+#include "pcbmesh/board/board.hpp"
+#include "pcbmesh/mesh/mesh_data.hpp"
+#include "pcbmesh/mesh/prism_mesh.hpp"
+
+namespace pcbmesh::formats {
+
+enum class Match { no, maybe, yes };
+
+struct ReadBoardResult {
+  board::Board board;
+  Diagnostics diagnostics;
+};
+
+/// A board format: plain data, listed in board_formats().
+struct BoardFormat {
+  std::string_view name;                          ///< e.g. "kicad"
+  std::string_view title;                         ///< e.g. "KiCad board, file formats v5 to v10"
+  std::span<const std::string_view> extensions;   ///< with the dot
+  Match (*sniff)(std::string_view head, std::string_view file_name);  ///< head: first 4 kB
+  ReadBoardResult (*read)(const std::filesystem::path& file, const Progress& progress);
+};
+
+struct WriteMeshOptions {
+  bool binary = true;
+  LengthUnit unit = LengthUnit::metre;
+  std::string version;                            ///< format version, e.g. "4.1"; empty = the format's default
+};
+
+/// A mesh format. `write` or `read` may be null.
+struct MeshFormat {
+  std::string_view name;
+  std::string_view title;
+  std::span<const std::string_view> extensions;
+  void (*write)(const mesh::PrismMesh& mesh, const std::filesystem::path& file, const WriteMeshOptions& options,
+                const Progress& progress);
+  mesh::MeshData (*read)(const std::filesystem::path& file, const Progress& progress);
+};
+
+/// The tables: explicit, ordered, no registration at start-up.
+[[nodiscard]] std::span<const BoardFormat* const> board_formats();
+[[nodiscard]] std::span<const MeshFormat* const> mesh_formats();
+
+/// Reads a board: by format name if given, else by a unique "yes" from sniffing, else by extension.
+/// Files ending in .xz or .gz are unpacked on the fly.
+/// @throws Error file_unreadable (201), format_unknown (204) showing the head of the file and the list.
+[[nodiscard]] ReadBoardResult read_board(const std::filesystem::path& file, std::string_view format = {},
+                                         const Progress& progress = Progress{});
+
+/// Writes a mesh: by format name if given, else by extension. The file appears whole or not at all; an existing
+/// one survives any failure. @throws Error usage (101), write_failed (701), format_limit (703), cancelled (103).
+void write_mesh(const mesh::PrismMesh& mesh, const std::filesystem::path& file, const WriteMeshOptions& options,
+                std::string_view format = {}, const Progress& progress = Progress{});
+
+/// Reads a mesh for check and convert. @throws Error file_unreadable (201), file_syntax (202), file_truncated (205).
+[[nodiscard]] mesh::MeshData read_mesh(const std::filesystem::path& file, std::string_view format = {},
+                                       const Progress& progress = Progress{});
+
+}  // namespace pcbmesh::formats

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "pcbmesh/layering/prism_quality.hpp"
+#include "pcbmesh/mesh/layer_plan.hpp"
+#include "pcbmesh/model/model.hpp"
+#include "pcbmesh/study/study.hpp"
+
+namespace pcbmesh::layering {
+
+/// The paper's CALCULATE_PRISM_HEIGHT: common height h for one policy, metres; nullopt for policy none.
+/// Thinnest layer means thinnest board slab: air does not count.
+[[nodiscard]] std::optional<double> common_height_m(study::HeightPolicy policy, const HeightStatistics& heights,
+                                                    std::span<const model::Slab> slabs);
+
+/// Longest edge for the second triangulation (REVISED step): h if the policy feeds back and h < longest_edge, else nullopt.
+[[nodiscard]] std::optional<double> feedback_edge_m(study::HeightPolicy policy, double common_height_m, double longest_edge_m);
+
+/// Number of sub-layers of a layer of height H for common height h. Tolerates rounding: 0.4 / 0.1 is 4.
+/// `optimal` uses the final mesh's mean optimal height instead of h.
+[[nodiscard]] int num_sublayers(study::SublayerRule rule, double layer_height_m, double common_height_m,
+                                const HeightStatistics& final_heights);
+
+/// z levels for all slabs. `common_height_m` empty: one sub-layer per slab unless the rule is optimal.
+/// @throws Error layering_invalid (501) if a count exceeds 1,000,000.
+[[nodiscard]] mesh::LayerPlan choose_layers(std::span<const model::Slab> slabs, study::SublayerRule rule,
+                                            std::optional<double> common_height_m, const HeightStatistics& final_heights);
+
+}  // namespace pcbmesh::layering

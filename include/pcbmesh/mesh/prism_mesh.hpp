@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pcbmesh/board/board.hpp"
+#include "pcbmesh/mesh/layer_plan.hpp"
+#include "pcbmesh/mesh/planar_mesh.hpp"
+
+namespace pcbmesh::mesh {
+
+/// One volume group: all prisms of one (layer, material, net).
+struct VolumeTag {
+  std::int32_t id = 0;         ///< 1-based, dense
+  std::string name;            ///< "layer|material|net"; net "none" where there is none
+  std::int32_t layer = 0;      ///< index into layers
+  std::int32_t material = 0;   ///< index into materials
+  std::int32_t net = -1;       ///< index into nets, or -1
+  std::int64_t num_prisms = 0;
+  double volume_m3 = 0;
+};
+
+enum class FaceTagKind { outer, conductor };
+
+/// One face group.
+struct FaceTag {
+  std::int32_t id = 0;         ///< 1-based, dense, own number space beside the volumes
+  std::string name;            ///< "xmin".."zmax", "side" (other lateral outer faces), or "surface|net"
+  FaceTagKind kind = FaceTagKind::outer;
+  std::int32_t net = -1;
+  std::int64_t num_triangles = 0;
+  std::int64_t num_quads = 0;
+  double area_m2 = 0;
+};
+
+/// Horizontal face of the boundary: triangle `triangle` at level `level`. `up` = its outward normal points to +z.
+struct Cap {
+  std::int32_t tag = 0;        ///< index into face_tags
+  std::int32_t level = 0;
+  std::int32_t triangle = 0;
+  bool up = false;
+};
+
+/// Vertical face of the boundary over planar edge a->b, one per sub-layer of `slab`; the meshed side is to the left of a->b,
+/// so the outward normal points to the right.
+struct Wall {
+  std::int32_t tag = 0;
+  std::int32_t slab = 0;
+  std::int32_t a = 0;
+  std::int32_t b = 0;
+};
+
+struct PrismMeshParts {
+  PlanarMesh planar;
+  LayerPlan plan;
+  std::vector<std::string> layers;               ///< layer names, one per distinct name, bottom to top
+  std::vector<board::Material> materials;
+  std::vector<std::string> nets;
+  std::vector<VolumeTag> volume_tags;            ///< sorted by first slab, then material, then net
+  std::vector<FaceTag> face_tags;
+  std::vector<std::int32_t> column_tags;         ///< [region * num_slabs + slab]: index into volume_tags, or -1 = void
+  std::vector<Cap> caps;                         ///< sorted by (tag, level, triangle)
+  std::vector<Wall> walls;                       ///< sorted by (tag, slab, a, b)
+  std::vector<std::int32_t> net_pieces;          ///< per net: connected pieces of its copper by the exact layout; -1 = not known
+  std::vector<std::array<std::int32_t, 2>> touching_nets;  ///< pairs of nets that touch in the layout itself
+};
+
+/// The mesh: PlanarMesh x LayerPlan x label table. Implicit: ids by arithmetic, nodes and cells computed on demand.
+/// Void cells (hollow conductors, cut-outs without air) are absent, and ids are dense all the same.
+///
+/// Node of planar vertex v at level k: node_id(k, v). Prism over triangle t in sub-layer s: prism_id(s, t), corners
+/// (bottom 0 1 2 counter-clockwise seen from above, top 3 4 5): positive Jacobian in Gmsh order.
+///
+/// @guarantee X1  memory is O(planar mesh + regions x slabs + boundary faces of one sub-layer per slab), never O(prisms)
+/// @guarantee X2  node and prism ids are 0..n-1, ascending in (level, vertex) and (sub-layer, triangle)
+/// @guarantee X3  every face between a prism and a void or the outside is in exactly one of caps and walls
+class PrismMesh {
+ public:
+  /// @throws Error internal (901). @cost O(planar mesh x distinct slab masks).
+  [[nodiscard]] static PrismMesh from_parts(PrismMeshParts parts);
+
+  [[nodiscard]] const PlanarMesh& planar() const { return parts_->planar; }
+  [[nodiscard]] const LayerPlan& plan() const { return parts_->plan; }
+  [[nodiscard]] std::span<const std::string> layers() const { return parts_->layers; }
+  [[nodiscard]] std::span<const board::Material> materials() const { return parts_->materials; }
+  [[nodiscard]] std::span<const std::string> nets() const { return parts_->nets; }
+  [[nodiscard]] std::span<const VolumeTag> volume_tags() const { return parts_->volume_tags; }
+  [[nodiscard]] std::span<const FaceTag> face_tags() const { return parts_->face_tags; }
+  [[nodiscard]] std::span<const Cap> caps() const { return parts_->caps; }
+  [[nodiscard]] std::span<const Wall> walls() const { return parts_->walls; }
+  [[nodiscard]] std::span<const std::int32_t> net_pieces() const { return parts_->net_pieces; }
+  [[nodiscard]] std::span<const std::array<std::int32_t, 2>> touching_nets() const { return parts_->touching_nets; }
+
+  [[nodiscard]] std::int64_t num_nodes() const { return num_nodes_; }
+  [[nodiscard]] std::int64_t num_prisms() const { return num_prisms_; }
+  /// Boundary faces: caps and walls times sub-layers.
+  [[nodiscard]] std::int64_t num_boundary_triangles() const;
+  [[nodiscard]] std::int64_t num_boundary_quads() const;
+
+  /// Index into volume_tags, or -1 if (slab, triangle) is void. @cost O(1).
+  [[nodiscard]] std::int32_t tag_of(std::int32_t slab, std::int32_t triangle) const;
+  /// Id of an existing node / prism. @cost O(1). REQUIRES the node / prism to exist.
+  [[nodiscard]] std::int64_t node_id(std::int32_t level, std::int32_t vertex) const;
+  [[nodiscard]] std::int64_t prism_id(std::int32_t sublayer, std::int32_t triangle) const;
+  [[nodiscard]] bool has_node(std::int32_t level, std::int32_t vertex) const;
+  /// Number of nodes of one level, and id of its first node.
+  [[nodiscard]] std::int64_t num_nodes_of_level(std::int32_t level) const;
+  [[nodiscard]] std::int64_t first_node_of_level(std::int32_t level) const;
+  /// Number of prisms of one sub-layer, and id of its first prism.
+  [[nodiscard]] std::int64_t num_prisms_of_sublayer(std::int32_t sublayer) const;
+  [[nodiscard]] std::int64_t first_prism_of_sublayer(std::int32_t sublayer) const;
+
+  /// Coordinates in metres of nodes [first, first + out.size()). @cost O(out + log levels + block search).
+  void fill_nodes(std::int64_t first, std::span<std::array<double, 3>> out) const;
+  /// Corners (node ids) of prisms [first, first + out.size()), and the tag index of each if `tags` is not empty.
+  void fill_prisms(std::int64_t first, std::span<std::array<std::int64_t, 6>> out, std::span<std::int32_t> tags = {}) const;
+  /// Triangles of the planar mesh that carry each tag in one slab, grouped: offsets has volume_tags().size() + 1 entries.
+  /// Ascending within a tag. @cost O(triangles + tags).
+  void group_triangles(std::int32_t slab, std::vector<std::int32_t>& offsets, std::vector<std::int32_t>& triangles) const;
+
+ private:
+  /// Subset of 0..n-1 with constant-time rank: bit words and one running count per word. Empty words = the full set.
+  struct Mask {
+    std::vector<std::uint64_t> words;
+    std::vector<std::int32_t> ranks;
+    std::int32_t size = 0;   ///< members
+    [[nodiscard]] bool has(std::int32_t i) const;
+    [[nodiscard]] std::int32_t rank(std::int32_t i) const;
+  };
+  [[nodiscard]] const Mask& level_mask(std::int32_t level) const;
+  [[nodiscard]] const Mask& sublayer_mask(std::int32_t sublayer) const;
+
+  std::shared_ptr<const PrismMeshParts> parts_;
+  std::shared_ptr<const std::vector<Mask>> masks_;
+  std::vector<std::int32_t> mask_of_level_, mask_of_sublayer_;
+  std::vector<std::int64_t> first_node_, first_prism_;   ///< per level / sub-layer, plus one
+  std::int64_t num_nodes_ = 0, num_prisms_ = 0;
+};
+
+}  // namespace pcbmesh::mesh

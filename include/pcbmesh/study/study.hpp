@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pcbmesh/base/units.hpp"
+#include "pcbmesh/geometry/path.hpp"
+
+namespace pcbmesh::study {
+
+/// What part of the board is meshed.
+enum class RegionKind {
+  whole,  ///< the whole board
+  nets,   ///< bounding box of the named nets' copper, grown by the margin
+  box     ///< the given box
+};
+
+/// How copper enters the mesh.
+enum class ConductorMode {
+  solid,  ///< copper is a meshed volume
+  hollow  ///< copper is left out; its skin is tagged surface|net
+};
+
+/// Overrides the conductor mode of one net, one layer, or one net on one layer. Later rules win.
+struct ConductorRule {
+  std::string net;    ///< empty = every net
+  std::string layer;  ///< empty = every layer (barrels of drills included)
+  ConductorMode mode = ConductorMode::solid;
+  bool operator==(const ConductorRule&) const = default;
+};
+
+/// Common prism height h, the paper's CALCULATE_PRISM_HEIGHT. Policies 2 to 5 feed h back as longest edge when h is smaller.
+enum class HeightPolicy {
+  none,             ///< our own: no common height; every slab stays one sub-layer unless `sublayers` says otherwise
+  basic,            ///< case 1: h = thinnest layer, no feedback
+  average,          ///< case 2: mean optimal height
+  maximum,          ///< case 3: largest optimal height
+  minimum,          ///< case 4: smallest optimal height
+  thinnest_layer    ///< case 5: thinnest layer, with feedback
+};
+
+/// How a layer of height H is cut by the common height h.
+enum class SublayerRule {
+  floor,   ///< max(1, floor(H/h)): what the paper's tables imply
+  round,   ///< max(1, round(H/h))
+  ceil,    ///< ceil(H/h)
+  none,    ///< one sub-layer per layer
+  optimal  ///< exact thresholds F10 on the final mesh's mean optimal height
+};
+
+/// What the engineer wants to know about a board: everything that steers the mesh. Plain values; parse and
+/// resolve check them. Lengths in nanometres.
+struct Study {
+  static constexpr int schema_version = 1;
+
+  RegionKind region = RegionKind::whole;
+  std::vector<std::string> nets;                ///< region nets: at least one
+  Nm margin = 2 * nm_per_mm;                    ///< region nets: growth of the bounding box
+  std::optional<geometry::Box> box;             ///< region box
+
+  ConductorMode conductors = ConductorMode::solid;
+  std::vector<ConductorRule> conductor_rules;
+
+  Nm air_above = 1 * nm_per_mm;   ///< 0 = no air: outside the outline is then void
+  Nm air_below = 1 * nm_per_mm;
+  Nm air_around = 0;              ///< beside the board's bounding box (whole board only)
+
+  std::optional<double> frequency_hz;           ///< bounds the longest edge by a third of the local wavelength
+  std::optional<Nm> longest_edge;               ///< empty = from the frequency, else 2 mm as in the paper
+  double min_angle_deg = 20.7;                  ///< in (0, 28.6]
+  std::optional<Nm> edge_at_copper;             ///< graded size: edge length at copper outlines
+  double growth = 0.3;                          ///< graded size: growth of the edge length per distance
+  HeightPolicy policy = HeightPolicy::average;
+  SublayerRule sublayers = SublayerRule::optimal;
+  std::optional<Nm> tolerance;                  ///< empty = auto
+  geometry::ArcOptions arcs{};
+  LengthUnit unit = LengthUnit::metre;
+  std::int64_t max_prisms = 200'000'000;        ///< refuse above this forecast
+
+  bool operator==(const Study&) const;
+};
+
+[[nodiscard]] std::string_view name_of(RegionKind value);
+[[nodiscard]] std::string_view name_of(ConductorMode value);
+[[nodiscard]] std::string_view name_of(HeightPolicy value);
+[[nodiscard]] std::string_view name_of(SublayerRule value);
+/// Inverse of name_of; the paper's case numbers "1" to "5" are policies too. @throws Error usage (101) listing the choices.
+[[nodiscard]] HeightPolicy parse_height_policy(std::string_view text);
+[[nodiscard]] SublayerRule parse_sublayer_rule(std::string_view text);
+[[nodiscard]] ConductorMode parse_conductor_mode(std::string_view text);
+
+/// Reads a study JSON (docs/schema/study.schema.json). Unknown fields are errors.
+/// @throws Error study_invalid (102) with the field's JSON pointer, file_unreadable (201), file_syntax (202) with the line.
+[[nodiscard]] Study read_study(const std::filesystem::path& file);
+[[nodiscard]] Study parse_study(std::string_view json, std::string_view file_name);
+
+/// The study as JSON, every default filled in; parse_study(to_json(s)) == s.
+[[nodiscard]] std::string to_json(const Study& study);
+
+/// Ranges and combinations. @throws Error study_invalid (102).
+void check(const Study& study);
+
+}  // namespace pcbmesh::study

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pcbmesh/mesh/mesh_data.hpp"
+
+namespace pcbmesh::validation {
+
+enum class FindingSeverity { warning, error };
+
+/// All findings of one kind: counted in full, with the first few places.
+struct Finding {
+  std::string code;                                ///< stable, e.g. "face.unmatched"
+  FindingSeverity severity = FindingSeverity::error;
+  std::string text;                                ///< what is wrong, in one sentence, with numbers
+  std::int64_t count = 0;
+  struct Place {
+    std::int64_t cell = -1;                        ///< cell or face index, -1 = none
+    std::array<double, 3> at{};                    ///< coordinates as in the file
+    std::string group;                             ///< name of the volume or face group, may be empty
+  };
+  std::vector<Place> places;                       ///< at most 8
+};
+
+/// One check and what it looked at.
+struct CheckRun {
+  std::string name;                                ///< e.g. "faces"
+  std::int64_t num_examined = 0;
+  std::int64_t num_found = 0;
+  double cpu_s = 0;
+};
+
+struct GroupVolume {
+  std::int32_t tag = 0;
+  std::string name;
+  std::int64_t num_cells = 0;
+  double volume = 0;                               ///< cubed unit of the file
+};
+
+/// Verdict on one mesh. Never throws for a bad mesh: a bad mesh is an answer.
+struct Report {
+  std::vector<CheckRun> checks;
+  std::vector<Finding> findings;
+  std::vector<GroupVolume> volumes;
+  std::int64_t num_nodes = 0, num_cells = 0, num_faces = 0;
+  /// No finding of severity error.
+  [[nodiscard]] bool passed() const;
+};
+
+/// What the mesh is supposed to be, from tags.json.
+struct Expectation {
+  struct Volume {
+    std::int32_t tag = 0;
+    std::string name, layer, material, net;        ///< net empty = none
+    bool conductor = false;
+    std::int64_t num_cells = -1;
+    double volume_m3 = -1;                         ///< area x height, < 0 = unknown
+  };
+  struct Face {
+    std::int32_t tag = 0;
+    std::string name;
+    bool outer = true;
+    std::int64_t num_faces = -1;
+    double area_m2 = -1;
+  };
+  struct Net {
+    std::string name;
+    std::int32_t pieces = -1;                      ///< connected pieces of solid copper by the layout; < 0 = unknown
+  };
+  double unit_m = 1.0;                             ///< metres per unit of the file
+  std::vector<Volume> volumes;
+  std::vector<Face> faces;
+  std::vector<Net> nets;
+  std::vector<std::array<std::string, 2>> touching_nets;  ///< allowed contacts
+};
+
+/// Reads the contract tags.json. @throws Error file_unreadable (201), file_syntax (202).
+[[nodiscard]] Expectation read_expectation(const std::string& file);
+
+struct CheckOptions {
+  int num_threads = 1;
+};
+
+/// Runs every check. Shares no code with the generator.
+/// @param expectation  null: only what the mesh itself promises is checked.
+/// @cost about 62 bytes per cell beyond the mesh; face matching about 5 million cells a second.
+[[nodiscard]] Report check(const mesh::MeshData& mesh, const Expectation* expectation, const CheckOptions& options = {});
+
+/// For people: verdict, checks with counts, findings grouped with first places.
+[[nodiscard]] std::string to_text(const Report& report);
+/// For machines: docs/schema/check-report.schema.json.
+[[nodiscard]] std::string to_json(const Report& report);
+
+}  // namespace pcbmesh::validation
