@@ -6,8 +6,12 @@
 
 namespace pcbmesh {
 
-void Diagnostics::note(std::string_view code, std::string_view text, Spot spot) { add(Severity::note, code, text, std::move(spot)); }
-void Diagnostics::warn(std::string_view code, std::string_view text, Spot spot) { add(Severity::warning, code, text, std::move(spot)); }
+void Diagnostics::note(std::string_view code, std::string_view text, Spot spot) {
+  add(Severity::note, code, text, std::move(spot));
+}
+void Diagnostics::warn(std::string_view code, std::string_view text, Spot spot) {
+  add(Severity::warning, code, text, std::move(spot));
+}
 
 void Diagnostics::add(Severity severity, std::string_view code, std::string_view text, Spot spot) {
   auto found = std::find_if(entries_.begin(), entries_.end(), [&](const Diagnostic& d) { return d.code == code; });

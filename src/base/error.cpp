@@ -22,14 +22,22 @@ int exit_code(ErrorCode code) noexcept {
   if (code == ErrorCode::cancelled) return 130;
   if (code == ErrorCode::prism_limit) return 4;
   switch (number / 100) {
-    case 1: return 2;
-    case 2: return 3;
-    case 3: return 3;
-    case 4: return 4;
-    case 5: return 4;
-    case 6: return 4;
-    case 7: return 5;
-    default: return 70;
+    case 1:
+      return 2;
+    case 2:
+      return 3;
+    case 3:
+      return 3;
+    case 4:
+      return 4;
+    case 5:
+      return 4;
+    case 6:
+      return 4;
+    case 7:
+      return 5;
+    default:
+      return 70;
   }
 }
 
@@ -41,7 +49,8 @@ Error::Error(ErrorCode code, std::string text, Spot spot, std::vector<std::int64
 
 void report_bug(const char* condition, const char* file, int line) {
   throw Error(ErrorCode::internal,
-              fmt::format("pcbmesh broke its own rule '{}' at {}:{}; this is a bug, please report it with the input", condition, file, line));
+              fmt::format("pcbmesh broke its own rule '{}' at {}:{}; this is a bug, please report it with the input", condition,
+                          file, line));
 }
 
 }  // namespace pcbmesh

@@ -3,6 +3,8 @@
 
 namespace pcbmesh {
 
-std::string_view version() noexcept { return PCBMESH_VERSION; }
+std::string_view version() noexcept {
+  return PCBMESH_VERSION;
+}
 
 }  // namespace pcbmesh

@@ -44,15 +44,20 @@ int chords_per_turn(double radius, const ArcOptions& options) {
 double corner_radius(double r, int n, ArcMode mode) {
   const double half = std::numbers::pi / n;
   switch (mode) {
-    case ArcMode::inscribed: return r;
+    case ArcMode::inscribed:
+      return r;
     case ArcMode::octagon:
-    case ArcMode::circumscribed: return r / std::cos(half);
-    case ArcMode::equal_area: return r * std::sqrt(2 * half / std::sin(2 * half));
+    case ArcMode::circumscribed:
+      return r / std::cos(half);
+    case ArcMode::equal_area:
+      return r * std::sqrt(2 * half / std::sin(2 * half));
   }
   return r;
 }
 
-Point rounded(double x, double y) { return {std::llround(x), std::llround(y)}; }
+Point rounded(double x, double y) {
+  return {std::llround(x), std::llround(y)};
+}
 
 /// Appends the corners strictly between two angles of the circle's own division, walking by `sign`.
 /// `from` and `to` are angles in radians, to reached from `from` in the direction of sign.
@@ -79,7 +84,9 @@ void append_arc(Ring& ring, Point start, Point mid, Point end, const ArcOptions&
   ring.push_back(start);
   const std::optional<Circle> circle = circle_through(start, mid, end);
   if (!circle) return;
-  const auto angle = [&](Point p) { return std::atan2(static_cast<double>(p.y) - circle->y, static_cast<double>(p.x) - circle->x); };
+  const auto angle = [&](Point p) {
+    return std::atan2(static_cast<double>(p.y) - circle->y, static_cast<double>(p.x) - circle->x);
+  };
   int sign = orientation(start, mid, end);
   if (sign == 0) sign = 1;
   append_corners(ring, *circle, angle(start), angle(end), sign, options);
@@ -96,7 +103,9 @@ Ring capsule(Point a, Point b, Nm width, const ArcOptions& options) {
   if (a == b) return circle(a, width / 2, options);
   const double dx = static_cast<double>(b.x - a.x), dy = static_cast<double>(b.y - a.y), length = std::hypot(dx, dy);
   const double nx = -dy / length * r, ny = dx / length * r;  // to the left
-  const auto at = [&](Point p, double sx) { return rounded(static_cast<double>(p.x) + sx * nx, static_cast<double>(p.y) + sx * ny); };
+  const auto at = [&](Point p, double sx) {
+    return rounded(static_cast<double>(p.x) + sx * nx, static_cast<double>(p.y) + sx * ny);
+  };
   const double left = std::atan2(ny, nx), right = std::atan2(-ny, -nx);
   Ring ring;
   ring.push_back(at(b, -1));
@@ -179,26 +188,21 @@ std::vector<Ring> outline(const Figure& figure, const ArcOptions& options, bool&
 }
 
 Box bounds(const Figure& figure) {
+  // Chords within a micrometre of the arcs, grown by that micrometre.
+  constexpr Nm slack = nm_per_um;
   Box box;
-  for (Point p : figure.path.points) box.add(p);
-  const std::size_t n = figure.path.points.size();
-  for (std::int32_t i : figure.path.arc_starts) {
-    const auto at = [&](std::size_t k) { return figure.path.points[(static_cast<std::size_t>(i) + k) % n]; };
-    if (const auto c = circle_through(at(0), at(1), at(2))) {
-      // Safe and simple: an arc stays within its radius of its centre, and within the chord polygon's reach.
-      const Nm r = static_cast<Nm>(std::ceil(c->r));
-      const double reach = std::hypot(static_cast<double>(at(2).x - at(0).x), static_cast<double>(at(2).y - at(0).y));
-      if (orientation(at(0), at(1), at(2)) == 0 || reach >= 1.9 * c->r || static_cast<double>(r) < 1e8) {
-        box.add(rounded(c->x - c->r, c->y - c->r));
-        box.add(rounded(c->x + c->r, c->y + c->r));
-      }
-    }
-  }
-  return box.is_empty() ? box : box.grown((figure.pen + 1) / 2);
+  for (Point p : flatten(figure.path, {slack, ArcMode::inscribed})) box.add(p);
+  return box.is_empty() ? box : box.grown((figure.pen + 1) / 2 + (figure.path.arc_starts.empty() ? 0 : slack));
 }
 
-Figure disc(Point centre, Nm diameter) { return {Path{{centre}, {}, false}, diameter, false}; }
-Figure segment(Point a, Point b, Nm width) { return {Path{{a, b}, {}, false}, width, false}; }
-Figure polygon(Ring corners) { return {Path{std::move(corners), {}, true}, 0, true}; }
+Figure disc(Point centre, Nm diameter) {
+  return {Path{{centre}, {}, false}, diameter, false};
+}
+Figure segment(Point a, Point b, Nm width) {
+  return {Path{{a, b}, {}, false}, width, false};
+}
+Figure polygon(Ring corners) {
+  return {Path{std::move(corners), {}, true}, 0, true};
+}
 
 }  // namespace pcbmesh::geometry

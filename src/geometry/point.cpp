@@ -17,12 +17,17 @@ void Box::add(const Box& other) noexcept {
   add(other.max);
 }
 
-Box Box::grown(Nm by) const noexcept { return {{min.x - by, min.y - by}, {max.x + by, max.y + by}}; }
+Box Box::grown(Nm by) const noexcept {
+  return {{min.x - by, min.y - by}, {max.x + by, max.y + by}};
+}
 
-bool Box::contains(Point p) const noexcept { return p.x >= min.x && p.x <= max.x && p.y >= min.y && p.y <= max.y; }
+bool Box::contains(Point p) const noexcept {
+  return p.x >= min.x && p.x <= max.x && p.y >= min.y && p.y <= max.y;
+}
 
 bool Box::touches(const Box& other) const noexcept {
-  return !is_empty() && !other.is_empty() && min.x <= other.max.x && other.min.x <= max.x && min.y <= other.max.y && other.min.y <= max.y;
+  return !is_empty() && !other.is_empty() && min.x <= other.max.x && other.min.x <= max.x && min.y <= other.max.y &&
+         other.min.y <= max.y;
 }
 
 int orientation(Point a, Point b, Point c) noexcept {
@@ -37,7 +42,9 @@ __int128 twice_area_nm2(const Ring& ring) noexcept {
   return sum;
 }
 
-double area_mm2(const Ring& ring) noexcept { return static_cast<double>(twice_area_nm2(ring)) * 0.5e-12; }
+double area_mm2(const Ring& ring) noexcept {
+  return static_cast<double>(twice_area_nm2(ring)) * 0.5e-12;
+}
 
 void make_counter_clockwise(Ring& ring) {
   if (twice_area_nm2(ring) < 0) std::reverse(ring.begin(), ring.end());
@@ -56,7 +63,8 @@ Ring clip_to_box(const Ring& ring, const Box& box) {
     const auto cross = [&](Point a, Point b) {
       // Ordered ends: the same edge walked both ways gives the same point.
       if (b < a) std::swap(a, b);
-      const long double t = static_cast<long double>(limit - (along_x ? a.x : a.y)) / static_cast<long double>(along_x ? b.x - a.x : b.y - a.y);
+      const long double t =
+          static_cast<long double>(limit - (along_x ? a.x : a.y)) / static_cast<long double>(along_x ? b.x - a.x : b.y - a.y);
       if (along_x) return Point{limit, a.y + static_cast<Nm>(std::llroundl(t * static_cast<long double>(b.y - a.y)))};
       return Point{a.x + static_cast<Nm>(std::llroundl(t * static_cast<long double>(b.x - a.x))), limit};
     };

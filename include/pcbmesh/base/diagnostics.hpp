@@ -17,10 +17,10 @@ enum class Severity { note, warning };
 /// All messages of one kind: counted in full, with the first few texts and places kept.
 struct Diagnostic {
   Severity severity = Severity::warning;
-  std::string code;             ///< stable dotted name, e.g. "kicad.text_on_copper"
-  std::string text;             ///< text of the first occurrence
-  std::int64_t count = 0;       ///< how often it happened
-  std::vector<Spot> spots;      ///< places of the first `max_spots` occurrences
+  std::string code;         ///< stable dotted name, e.g. "kicad.text_on_copper"
+  std::string text;         ///< text of the first occurrence
+  std::int64_t count = 0;   ///< how often it happened
+  std::vector<Spot> spots;  ///< places of the first `max_spots` occurrences
   static constexpr std::size_t max_spots = 8;
 };
 

@@ -30,8 +30,8 @@ enum class LayerKind { copper, dielectric, solder_mask };
 
 /// One layer of the stackup.
 struct StackupLayer {
-  std::string name;            ///< canonical name, e.g. "F.Cu", "dielectric 1"
-  std::string user_name;       ///< name the designer gave, may be empty
+  std::string name;       ///< canonical name, e.g. "F.Cu", "dielectric 1"
+  std::string user_name;  ///< name the designer gave, may be empty
   LayerKind kind = LayerKind::dielectric;
   Nm thickness_nm = 0;         ///< > 0
   std::int32_t material = -1;  ///< index into materials
@@ -47,18 +47,18 @@ struct Shape {
   std::int32_t net = no_net;      ///< index into nets, or no_net
   ShapeKind kind = ShapeKind::track;
   geometry::Figure figure;
-  std::int64_t line = 0;          ///< where it stands in the source file, 0 = unknown
+  std::int64_t line = 0;  ///< where it stands in the source file, 0 = unknown
   bool operator==(const Shape&) const = default;
 };
 
 /// Drilled or routed hole through a span of copper layers.
 struct Drill {
-  geometry::Figure figure;            ///< dot or segment with pen = tool diameter; pen > 0
-  std::int32_t first_copper = 0;      ///< topmost copper layer of the span
-  std::int32_t last_copper = 0;       ///< bottommost, >= first_copper
+  geometry::Figure figure;        ///< dot or segment with pen = tool diameter; pen > 0
+  std::int32_t first_copper = 0;  ///< topmost copper layer of the span
+  std::int32_t last_copper = 0;   ///< bottommost, >= first_copper
   bool plated = true;
   std::int32_t net = no_net;
-  ShapeKind kind = ShapeKind::via;    ///< via or pad
+  ShapeKind kind = ShapeKind::via;  ///< via or pad
   std::int64_t line = 0;
   bool operator==(const Drill&) const = default;
 };
@@ -82,7 +82,7 @@ struct Pin {
 
 struct BoardParts {
   std::string name;
-  std::string source;                 ///< file it came from
+  std::string source;  ///< file it came from
   std::vector<Material> materials;
   std::vector<StackupLayer> stackup;  ///< top to bottom
   std::vector<std::string> nets;      ///< names; unique

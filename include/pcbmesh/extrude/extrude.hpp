@@ -15,8 +15,8 @@ namespace pcbmesh::extrude {
 
 /// Planar mesh x layer plan x model -> tagged prism mesh.
 ///
-/// Volume tags: one per (layer, material, net) in use. Face tags: zmin, zmax; xmin, xmax, ymin, ymax for walls on the sides of the
-/// bounding box, "side" for other outer walls, "surface|net" for skins of hollow conductors. Only tags in use are listed;
+/// Volume tags: one per (layer, material, net) in use. Face tags: zmin, zmax; xmin, xmax, ymin, ymax for walls on the sides of
+/// the bounding box, "side" for other outer walls, "surface|net" for skins of hollow conductors. Only tags in use are listed;
 /// the six box sides come first.
 ///
 /// @guarantee E1  every face between a prism and a void or the outside has exactly one tag

@@ -26,9 +26,9 @@ struct ReadBoardResult {
 
 /// A board format: plain data, listed in board_formats().
 struct BoardFormat {
-  std::string_view name;                          ///< e.g. "kicad"
-  std::string_view title;                         ///< e.g. "KiCad board, file formats v5 to v10"
-  std::span<const std::string_view> extensions;   ///< with the dot
+  std::string_view name;                                              ///< e.g. "kicad"
+  std::string_view title;                                             ///< e.g. "KiCad board, file formats v5 to v10"
+  std::span<const std::string_view> extensions;                       ///< with the dot
   Match (*sniff)(std::string_view head, std::string_view file_name);  ///< head: first 4 kB
   ReadBoardResult (*read)(const std::filesystem::path& file, const Progress& progress);
 };
@@ -36,7 +36,7 @@ struct BoardFormat {
 struct WriteMeshOptions {
   bool binary = true;
   LengthUnit unit = LengthUnit::metre;
-  std::string version;                            ///< format version, e.g. "4.1"; empty = the format's default
+  std::string version;  ///< format version, e.g. "4.1"; empty = the format's default
 };
 
 /// A mesh format. `write` or `read` may be null.

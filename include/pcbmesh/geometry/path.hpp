@@ -36,8 +36,8 @@ struct ArcOptions {
   ArcMode mode = ArcMode::inscribed;  ///< octagon: eight chords per turn whatever the radius, as in the paper
 };
 
-/// Vertices of the path with arcs replaced by chords. Shared circles give equal chords: the division of a full circle depends on
-/// centre, radius and options alone. Nearly collinear arcs become one segment.
+/// Vertices of the path with arcs replaced by chords. Shared circles give equal chords: the division of a full circle depends
+/// on centre, radius and options alone. Nearly collinear arcs become one segment.
 [[nodiscard]] Ring flatten(const Path& path, const ArcOptions& options);
 
 /// Corners of a regular polygon for a circle. Counter-clockwise, first corner at angle 0 (octagon: edges axis-aligned).

@@ -9,8 +9,8 @@
 namespace pcbmesh::mesh {
 
 struct LayerPlanParts {
-  std::vector<double> z_m;              ///< levels, strictly increasing, num_sublayers + 1
-  std::vector<std::int32_t> slab;       ///< slab of each sub-layer, non-decreasing, dense from 0
+  std::vector<double> z_m;         ///< levels, strictly increasing, num_sublayers + 1
+  std::vector<std::int32_t> slab;  ///< slab of each sub-layer, non-decreasing, dense from 0
 };
 
 /// z levels of the extrusion and the slab each sub-layer belongs to; bottom to top.

@@ -16,13 +16,15 @@ enum class FaceKind : std::uint8_t { triangle, quadrangle };
   constexpr int corners[] = {4, 5, 6, 8};
   return corners[static_cast<int>(kind)];
 }
-[[nodiscard]] constexpr int corners_of(FaceKind kind) { return kind == FaceKind::triangle ? 3 : 4; }
+[[nodiscard]] constexpr int corners_of(FaceKind kind) {
+  return kind == FaceKind::triangle ? 3 : 4;
+}
 
 /// Cells of one kind. Corners in Gmsh order.
 struct CellBlock {
   CellKind kind = CellKind::wedge;
-  std::vector<std::int64_t> corners;   ///< node indices (0-based), corners_of(kind) per cell
-  std::vector<std::int32_t> tags;      ///< volume tag per cell (the file's positive id; 0 = none)
+  std::vector<std::int64_t> corners;  ///< node indices (0-based), corners_of(kind) per cell
+  std::vector<std::int32_t> tags;     ///< volume tag per cell (the file's positive id; 0 = none)
   [[nodiscard]] std::int64_t size() const { return static_cast<std::int64_t>(tags.size()); }
 };
 
@@ -41,10 +43,10 @@ struct GroupName {
 
 /// An explicit mesh read from any file, for check and convert. Coordinates as written (see unit_m).
 struct MeshData {
-  std::string source;                            ///< file
+  std::string source;  ///< file
   std::vector<std::array<double, 3>> nodes;
   std::vector<CellBlock> cells;
-  std::vector<FaceBlock> faces;                  ///< tagged faces only
+  std::vector<FaceBlock> faces;  ///< tagged faces only
   std::vector<GroupName> names;
   std::vector<std::int64_t> num_other_elements;  ///< points [0] and lines [1] met and ignored
 };

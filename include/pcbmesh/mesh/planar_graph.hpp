@@ -20,9 +20,9 @@ struct Increment {
 
 struct PlanarGraphParts {
   std::vector<geometry::Point> vertices;
-  std::vector<std::array<std::int32_t, 2>> edges;   ///< u < v
-  std::vector<std::int32_t> increment_offsets;      ///< edges.size() + 1
-  std::vector<Increment> increments;                ///< per edge ascending by body
+  std::vector<std::array<std::int32_t, 2>> edges;  ///< u < v
+  std::vector<std::int32_t> increment_offsets;     ///< edges.size() + 1
+  std::vector<Increment> increments;               ///< per edge ascending by body
 };
 
 /// All feature edges of all slabs, projected to one plane and made clean.

@@ -10,12 +10,12 @@
 namespace pcbmesh::mesh {
 
 struct PlanarMeshParts {
-  std::vector<std::array<double, 2>> points_m;             ///< metres
-  std::vector<std::array<std::int32_t, 3>> triangles;      ///< counter-clockwise
-  std::vector<std::int32_t> regions;                       ///< per triangle: region id
-  std::vector<std::array<std::int32_t, 2>> constrained;    ///< constrained edges, u < v, sorted
-  std::vector<std::int32_t> region_body_offsets;           ///< num_regions + 1
-  std::vector<std::int32_t> region_bodies;                 ///< bodies present, ascending per region
+  std::vector<std::array<double, 2>> points_m;           ///< metres
+  std::vector<std::array<std::int32_t, 3>> triangles;    ///< counter-clockwise
+  std::vector<std::int32_t> regions;                     ///< per triangle: region id
+  std::vector<std::array<std::int32_t, 2>> constrained;  ///< constrained edges, u < v, sorted
+  std::vector<std::int32_t> region_body_offsets;         ///< num_regions + 1
+  std::vector<std::int32_t> region_bodies;               ///< bodies present, ascending per region
 };
 
 /// Constrained Delaunay triangulation of the projected board. Triangles outside the domain body are absent.

@@ -16,11 +16,11 @@ namespace pcbmesh::mesh {
 
 /// One volume group: all prisms of one (layer, material, net).
 struct VolumeTag {
-  std::int32_t id = 0;         ///< 1-based, dense
-  std::string name;            ///< "layer|material|net"; net "none" where there is none
-  std::int32_t layer = 0;      ///< index into layers
-  std::int32_t material = 0;   ///< index into materials
-  std::int32_t net = -1;       ///< index into nets, or -1
+  std::int32_t id = 0;        ///< 1-based, dense
+  std::string name;           ///< "layer|material|net"; net "none" where there is none
+  std::int32_t layer = 0;     ///< index into layers
+  std::int32_t material = 0;  ///< index into materials
+  std::int32_t net = -1;      ///< index into nets, or -1
   std::int64_t num_prisms = 0;
   double volume_m3 = 0;
 };
@@ -29,8 +29,8 @@ enum class FaceTagKind { outer, conductor };
 
 /// One face group.
 struct FaceTag {
-  std::int32_t id = 0;         ///< 1-based, dense, own number space beside the volumes
-  std::string name;            ///< "xmin".."zmax", "side" (other lateral outer faces), or "surface|net"
+  std::int32_t id = 0;  ///< 1-based, dense, own number space beside the volumes
+  std::string name;     ///< "xmin".."zmax", "side" (other lateral outer faces), or "surface|net"
   FaceTagKind kind = FaceTagKind::outer;
   std::int32_t net = -1;
   std::int64_t num_triangles = 0;
@@ -40,7 +40,7 @@ struct FaceTag {
 
 /// Horizontal face of the boundary: triangle `triangle` at level `level`. `up` = its outward normal points to +z.
 struct Cap {
-  std::int32_t tag = 0;        ///< index into face_tags
+  std::int32_t tag = 0;  ///< index into face_tags
   std::int32_t level = 0;
   std::int32_t triangle = 0;
   bool up = false;
@@ -58,15 +58,15 @@ struct Wall {
 struct PrismMeshParts {
   PlanarMesh planar;
   LayerPlan plan;
-  std::vector<std::string> layers;               ///< layer names, one per distinct name, bottom to top
+  std::vector<std::string> layers;  ///< layer names, one per distinct name, bottom to top
   std::vector<board::Material> materials;
   std::vector<std::string> nets;
-  std::vector<VolumeTag> volume_tags;            ///< sorted by first slab, then material, then net
+  std::vector<VolumeTag> volume_tags;  ///< sorted by first slab, then material, then net
   std::vector<FaceTag> face_tags;
-  std::vector<std::int32_t> column_tags;         ///< [region * num_slabs + slab]: index into volume_tags, or -1 = void
-  std::vector<Cap> caps;                         ///< sorted by (tag, level, triangle)
-  std::vector<Wall> walls;                       ///< sorted by (tag, slab, a, b)
-  std::vector<std::int32_t> net_pieces;          ///< per net: connected pieces of its copper by the exact layout; -1 = not known
+  std::vector<std::int32_t> column_tags;  ///< [region * num_slabs + slab]: index into volume_tags, or -1 = void
+  std::vector<Cap> caps;                  ///< sorted by (tag, level, triangle)
+  std::vector<Wall> walls;                ///< sorted by (tag, slab, a, b)
+  std::vector<std::int32_t> net_pieces;   ///< per net: connected pieces of its copper by the exact layout; -1 = not known
   std::vector<std::array<std::int32_t, 2>> touching_nets;  ///< pairs of nets that touch in the layout itself
 };
 
@@ -128,7 +128,7 @@ class PrismMesh {
   struct Mask {
     std::vector<std::uint64_t> words;
     std::vector<std::int32_t> ranks;
-    std::int32_t size = 0;   ///< members
+    std::int32_t size = 0;  ///< members
     [[nodiscard]] bool has(std::int32_t i) const;
     [[nodiscard]] std::int32_t rank(std::int32_t i) const;
   };
@@ -138,7 +138,7 @@ class PrismMesh {
   std::shared_ptr<const PrismMeshParts> parts_;
   std::shared_ptr<const std::vector<Mask>> masks_;
   std::vector<std::int32_t> mask_of_level_, mask_of_sublayer_;
-  std::vector<std::int64_t> first_node_, first_prism_;   ///< per level / sub-layer, plus one
+  std::vector<std::int64_t> first_node_, first_prism_;  ///< per level / sub-layer, plus one
   std::int64_t num_nodes_ = 0, num_prisms_ = 0;
 };
 

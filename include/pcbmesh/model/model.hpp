@@ -16,12 +16,12 @@ enum class SlabKind { air, dielectric, copper };
 
 /// Horizontal slice of the domain between two z planes. Slabs are stored bottom to top.
 struct Slab {
-  std::string layer;               ///< name of the board layer, or "air below", "air above"
+  std::string layer;  ///< name of the board layer, or "air below", "air above"
   SlabKind kind = SlabKind::dielectric;
   Nm z_bottom_nm = 0;
-  Nm z_top_nm = 0;                 ///< > z_bottom_nm
-  std::int32_t material = -1;      ///< inside the board outline, where no body is: index into materials
-  std::int32_t outside = -1;       ///< outside the board outline: material, or -1 = not meshed
+  Nm z_top_nm = 0;             ///< > z_bottom_nm
+  std::int32_t material = -1;  ///< inside the board outline, where no body is: index into materials
+  std::int32_t outside = -1;   ///< outside the board outline: material, or -1 = not meshed
   bool operator==(const Slab&) const = default;
 };
 
@@ -35,14 +35,14 @@ enum class BodyKind {
 
 /// A plane set extruded through a contiguous range of slabs; its shapes are drawn in `shapes`.
 struct Body {
-  std::string name;                ///< for messages, e.g. "copper GND on F.Cu"
+  std::string name;  ///< for messages, e.g. "copper GND on F.Cu"
   BodyKind kind = BodyKind::copper;
   std::int32_t material = -1;
   std::int32_t net = board::no_net;
-  std::int32_t first_slab = 0;     ///< lowest slab
-  std::int32_t last_slab = 0;      ///< highest slab, >= first_slab
-  std::int32_t priority = 0;       ///< the highest present wins; ties: the lower body index
-  bool hollow = false;             ///< not meshed, skin tagged surface|net
+  std::int32_t first_slab = 0;  ///< lowest slab
+  std::int32_t last_slab = 0;   ///< highest slab, >= first_slab
+  std::int32_t priority = 0;    ///< the highest present wins; ties: the lower body index
+  bool hollow = false;          ///< not meshed, skin tagged surface|net
   bool operator==(const Body&) const = default;
 };
 
@@ -60,18 +60,18 @@ struct ModelParts {
   std::vector<board::Material> materials;
   std::vector<std::string> nets;
   std::vector<Slab> slabs;
-  std::vector<Body> bodies;        ///< [0] domain, [1] board
+  std::vector<Body> bodies;  ///< [0] domain, [1] board
   std::vector<BodyShape> shapes;
   std::vector<std::int32_t> nets_of_interest;  ///< nets named by the study; empty = all
-  Nm narrowest_feature_nm = 0;     ///< smallest pen, hole or pad width of the copper in the domain; 0 = unknown
-  Nm narrowest_of_interest_nm = 0; ///< the same for nets_of_interest
+  Nm narrowest_feature_nm = 0;                 ///< smallest pen, hole or pad width of the copper in the domain; 0 = unknown
+  Nm narrowest_of_interest_nm = 0;             ///< the same for nets_of_interest
 };
 
 /// What fills one cell: region x slab.
 struct Label {
-  std::int32_t material = -1;      ///< -1 = void
+  std::int32_t material = -1;  ///< -1 = void
   std::int32_t net = board::no_net;
-  std::int32_t hollow_net = -2;    ///< void because of a hollow conductor: its net (may be no_net); -2 = not so
+  std::int32_t hollow_net = -2;  ///< void because of a hollow conductor: its net (may be no_net); -2 = not so
   [[nodiscard]] bool is_void() const { return material < 0; }
   friend auto operator<=>(const Label&, const Label&) = default;
 };
@@ -79,7 +79,8 @@ struct Label {
 /// The domain to be meshed.
 ///
 /// @guarantee M1  slabs are contiguous, bottom to top, each of positive height
-/// @guarantee M2  bodies[0] is the domain and bodies[1] the board, both through all slabs; every body names existing slabs, materials, nets
+/// @guarantee M2  bodies[0] is the domain and bodies[1] the board, both through all slabs; every body names existing slabs,
+/// materials, nets
 /// @guarantee M3  every shape names an existing body and has at least one ring
 class Model {
  public:

@@ -14,10 +14,10 @@
 namespace pcbmesh::overlay {
 
 struct OverlayOptions {
-  std::optional<Nm> tolerance_nm;      ///< empty = auto: min(20 um, narrowest/8) for a whole board,
-                                       ///< min(5 um, narrowest/20) when nets of interest are named
+  std::optional<Nm> tolerance_nm;         ///< empty = auto: min(20 um, narrowest/8) for a whole board,
+                                          ///< min(5 um, narrowest/20) when nets of interest are named
   double simplify_over_tolerance = 0.75;  ///< per-layer collapse distance over tolerance (15 um at 20 um)
-  double blunt_angle_deg = 30.0;       ///< needle tips sharper than this are blunted; 0 = off
+  double blunt_angle_deg = 30.0;          ///< needle tips sharper than this are blunted; 0 = off
   double blunt_width_over_tolerance = 1.35;
 };
 
@@ -26,25 +26,25 @@ struct SnapRecord {
   std::int32_t body = 0;
   std::int64_t num_moved = 0;
   Nm max_move_nm = 0;
-  geometry::Point at;                  ///< place of the largest move
-  double area_before_mm2 = 0;          ///< exact union
+  geometry::Point at;          ///< place of the largest move
+  double area_before_mm2 = 0;  ///< exact union
   double area_after_mm2 = 0;
 };
 
 struct OverlayStatistics {
-  Nm tolerance_nm = 0;                 ///< tolerance that was used in the end
-  int attempts = 1;                    ///< 1 = the first tolerance held
+  Nm tolerance_nm = 0;  ///< tolerance that was used in the end
+  int attempts = 1;     ///< 1 = the first tolerance held
   std::int64_t num_input_vertices = 0;
-  std::int64_t num_snapped = 0;        ///< vertices moved or merged
-  std::int64_t num_crossings = 0;      ///< crossings made vertices
+  std::int64_t num_snapped = 0;    ///< vertices moved or merged
+  std::int64_t num_crossings = 0;  ///< crossings made vertices
   int num_passes = 0;
-  double worst_body_area_error = 0;    ///< relative, copper bodies
-  double total_area_error = 0;         ///< relative, all copper
+  double worst_body_area_error = 0;  ///< relative, copper bodies
+  double total_area_error = 0;       ///< relative, all copper
 };
 
 struct OverlayResult {
   mesh::PlanarGraph graph;
-  std::vector<SnapRecord> ledger;      ///< copper and hole bodies, ascending
+  std::vector<SnapRecord> ledger;  ///< copper and hole bodies, ascending
   OverlayStatistics statistics;
   /// Per net: connected pieces of copper (layers joined by barrels) in the exact layout within the domain; 0 = none there.
   std::vector<std::int32_t> net_pieces;
@@ -59,7 +59,8 @@ struct OverlayResult {
 /// 3. Per slab range: area-preserving simplification; 4. all together: noding with tolerance, blunting, to a fixed point.
 /// 5. Verify components, touching nets and areas against 2; on failure retry at 3/4, 1/2, 1/4 ... of the tolerance.
 ///
-/// @guarantee O1  the graph has no crossing, no overlap, and no vertex within the tolerance of a foreign edge (tolerance/2 where
+/// @guarantee O1  the graph has no crossing, no overlap, and no vertex within the tolerance of a foreign edge (tolerance/2
+/// where
 ///                the guard needed it)
 /// @guarantee O2  nets that touch still touch, nets apart stay apart, each body keeps its number of components
 /// @guarantee O3  same input and options give the same bytes

@@ -23,13 +23,13 @@ struct StepTime {
 
 struct MeshBoardResult {
   mesh::PrismMesh mesh;
-  study::Study resolved;                       ///< every choice the study left open, filled in
+  study::Study resolved;  ///< every choice the study left open, filled in
   overlay::OverlayStatistics overlay;
   std::vector<overlay::SnapRecord> ledger;
   triangulate::TriangulateStatistics triangulate;
-  layering::HeightStatistics heights;          ///< of the final planar mesh
-  double common_height_m = 0;                  ///< 0 = none
-  bool fed_back = false;                       ///< the common height became the longest edge
+  layering::HeightStatistics heights;  ///< of the final planar mesh
+  double common_height_m = 0;          ///< 0 = none
+  bool fed_back = false;               ///< the common height became the longest edge
   layering::QualityStatistics quality;
   Diagnostics diagnostics;
   std::vector<StepTime> times;

@@ -37,12 +37,12 @@ struct ConductorRule {
 
 /// Common prism height h, the paper's CALCULATE_PRISM_HEIGHT. Policies 2 to 5 feed h back as longest edge when h is smaller.
 enum class HeightPolicy {
-  none,             ///< our own: no common height; every slab stays one sub-layer unless `sublayers` says otherwise
-  basic,            ///< case 1: h = thinnest layer, no feedback
-  average,          ///< case 2: mean optimal height
-  maximum,          ///< case 3: largest optimal height
-  minimum,          ///< case 4: smallest optimal height
-  thinnest_layer    ///< case 5: thinnest layer, with feedback
+  none,           ///< our own: no common height; every slab stays one sub-layer unless `sublayers` says otherwise
+  basic,          ///< case 1: h = thinnest layer, no feedback
+  average,        ///< case 2: mean optimal height
+  maximum,        ///< case 3: largest optimal height
+  minimum,        ///< case 4: smallest optimal height
+  thinnest_layer  ///< case 5: thinnest layer, with feedback
 };
 
 /// How a layer of height H is cut by the common height h.
@@ -60,28 +60,28 @@ struct Study {
   static constexpr int schema_version = 1;
 
   RegionKind region = RegionKind::whole;
-  std::vector<std::string> nets;                ///< region nets: at least one
-  Nm margin = 2 * nm_per_mm;                    ///< region nets: growth of the bounding box
-  std::optional<geometry::Box> box;             ///< region box
+  std::vector<std::string> nets;     ///< region nets: at least one
+  Nm margin = 2 * nm_per_mm;         ///< region nets: growth of the bounding box
+  std::optional<geometry::Box> box;  ///< region box
 
   ConductorMode conductors = ConductorMode::solid;
   std::vector<ConductorRule> conductor_rules;
 
-  Nm air_above = 1 * nm_per_mm;   ///< 0 = no air: outside the outline is then void
+  Nm air_above = 1 * nm_per_mm;  ///< 0 = no air: outside the outline is then void
   Nm air_below = 1 * nm_per_mm;
-  Nm air_around = 0;              ///< beside the board's bounding box (whole board only)
+  Nm air_around = 0;  ///< beside the board's bounding box (whole board only)
 
-  std::optional<double> frequency_hz;           ///< bounds the longest edge by a third of the local wavelength
-  std::optional<Nm> longest_edge;               ///< empty = from the frequency, else 2 mm as in the paper
-  double min_angle_deg = 20.7;                  ///< in (0, 28.6]
-  std::optional<Nm> edge_at_copper;             ///< graded size: edge length at copper outlines
-  double growth = 0.3;                          ///< graded size: growth of the edge length per distance
+  std::optional<double> frequency_hz;  ///< bounds the longest edge by a third of the local wavelength
+  std::optional<Nm> longest_edge;      ///< empty = from the frequency, else 2 mm as in the paper
+  double min_angle_deg = 20.7;         ///< in (0, 28.6]
+  std::optional<Nm> edge_at_copper;    ///< graded size: edge length at copper outlines
+  double growth = 0.3;                 ///< graded size: growth of the edge length per distance
   HeightPolicy policy = HeightPolicy::average;
   SublayerRule sublayers = SublayerRule::optimal;
-  std::optional<Nm> tolerance;                  ///< empty = auto
+  std::optional<Nm> tolerance;  ///< empty = auto
   geometry::ArcOptions arcs{};
   LengthUnit unit = LengthUnit::metre;
-  std::int64_t max_prisms = 200'000'000;        ///< refuse above this forecast
+  std::int64_t max_prisms = 200'000'000;  ///< refuse above this forecast
 
   bool operator==(const Study&) const;
 };

@@ -15,13 +15,13 @@ namespace pcbmesh::triangulate {
 
 /// Edge length that grows with the distance to copper outlines.
 struct Grading {
-  double edge_at_copper_nm = 0;   ///< > 0
-  double growth = 0.3;            ///< edge length gained per unit of distance
+  double edge_at_copper_nm = 0;  ///< > 0
+  double growth = 0.3;           ///< edge length gained per unit of distance
 };
 
 struct TriangulateOptions {
-  double longest_edge_nm = 2e6;   ///< > 0; a double: the feedback of h must not be rounded
-  double min_angle_deg = 20.7;    ///< in (0, 28.6]
+  double longest_edge_nm = 2e6;  ///< > 0; a double: the feedback of h must not be rounded
+  double min_angle_deg = 20.7;   ///< in (0, 28.6]
   std::optional<Grading> grading;
   std::int64_t max_vertices = 50'000'000;
 };
@@ -29,9 +29,9 @@ struct TriangulateOptions {
 struct TriangulateStatistics {
   std::int64_t num_input_vertices = 0;
   std::int64_t num_steiner = 0;
-  double min_angle_deg = 0;              ///< reached
-  std::int64_t num_below_bound = 0;      ///< triangles below the bound (forced by input angles)
-  double cdt_s = 0, refine_s = 0, label_s = 0;   ///< process CPU seconds
+  double min_angle_deg = 0;                     ///< reached
+  std::int64_t num_below_bound = 0;             ///< triangles below the bound (forced by input angles)
+  double cdt_s = 0, refine_s = 0, label_s = 0;  ///< process CPU seconds
 };
 
 struct TriangulateResult {

@@ -15,21 +15,21 @@ enum class FindingSeverity { warning, error };
 
 /// All findings of one kind: counted in full, with the first few places.
 struct Finding {
-  std::string code;                                ///< stable, e.g. "face.unmatched"
+  std::string code;  ///< stable, e.g. "face.unmatched"
   FindingSeverity severity = FindingSeverity::error;
-  std::string text;                                ///< what is wrong, in one sentence, with numbers
+  std::string text;  ///< what is wrong, in one sentence, with numbers
   std::int64_t count = 0;
   struct Place {
-    std::int64_t cell = -1;                        ///< cell or face index, -1 = none
-    std::array<double, 3> at{};                    ///< coordinates as in the file
-    std::string group;                             ///< name of the volume or face group, may be empty
+    std::int64_t cell = -1;      ///< cell or face index, -1 = none
+    std::array<double, 3> at{};  ///< coordinates as in the file
+    std::string group;           ///< name of the volume or face group, may be empty
   };
-  std::vector<Place> places;                       ///< at most 8
+  std::vector<Place> places;  ///< at most 8
 };
 
 /// One check and what it looked at.
 struct CheckRun {
-  std::string name;                                ///< e.g. "faces"
+  std::string name;  ///< e.g. "faces"
   std::int64_t num_examined = 0;
   std::int64_t num_found = 0;
   double cpu_s = 0;
@@ -39,7 +39,7 @@ struct GroupVolume {
   std::int32_t tag = 0;
   std::string name;
   std::int64_t num_cells = 0;
-  double volume = 0;                               ///< cubed unit of the file
+  double volume = 0;  ///< cubed unit of the file
 };
 
 /// Verdict on one mesh. Never throws for a bad mesh: a bad mesh is an answer.
@@ -56,10 +56,10 @@ struct Report {
 struct Expectation {
   struct Volume {
     std::int32_t tag = 0;
-    std::string name, layer, material, net;        ///< net empty = none
+    std::string name, layer, material, net;  ///< net empty = none
     bool conductor = false;
     std::int64_t num_cells = -1;
-    double volume_m3 = -1;                         ///< area x height, < 0 = unknown
+    double volume_m3 = -1;  ///< area x height, < 0 = unknown
   };
   struct Face {
     std::int32_t tag = 0;
@@ -70,9 +70,9 @@ struct Expectation {
   };
   struct Net {
     std::string name;
-    std::int32_t pieces = -1;                      ///< connected pieces of solid copper by the layout; < 0 = unknown
+    std::int32_t pieces = -1;  ///< connected pieces of solid copper by the layout; < 0 = unknown
   };
-  double unit_m = 1.0;                             ///< metres per unit of the file
+  double unit_m = 1.0;  ///< metres per unit of the file
   std::vector<Volume> volumes;
   std::vector<Face> faces;
   std::vector<Net> nets;
