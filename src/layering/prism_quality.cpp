@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "src/layering/running_sum.hpp"
+#include "pcbmesh/base/running_sum.hpp"
 
 namespace pcbmesh::layering {
 namespace {

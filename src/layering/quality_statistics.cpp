@@ -7,8 +7,8 @@
 #include <numbers>
 #include <vector>
 
+#include "pcbmesh/base/running_sum.hpp"
 #include "pcbmesh/layering/prism_quality.hpp"
-#include "src/layering/running_sum.hpp"
 
 namespace pcbmesh::layering {
 namespace {

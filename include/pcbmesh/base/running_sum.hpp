@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace pcbmesh::layering {
+namespace pcbmesh {
 
 /// Sum whose error does not grow with the number of terms. @source Neumaier 1974.
 class RunningSum {
@@ -19,4 +19,4 @@ class RunningSum {
   double sum_ = 0, lost_ = 0;
 };
 
-}  // namespace pcbmesh::layering
+}  // namespace pcbmesh
