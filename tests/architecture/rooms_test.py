@@ -28,6 +28,8 @@ def room_of(path):
         return parts[2]
     if parts[0] == "src":
         return parts[1]
+    if parts[:2] == ("formats", "syntax"):
+        return "syntax"
     return parts[0] if parts[0] in ("formats", "validation") else None
 
 
@@ -35,6 +37,8 @@ def target_room(include):
     parts = include.split("/")
     if parts[0] in ("pcbmesh", "src"):
         return parts[1]
+    if parts[:2] == ["formats", "syntax"]:
+        return "syntax"
     return parts[0] if parts[0] in ("formats", "validation") else None
 
 
