@@ -71,6 +71,34 @@ inline mesh::LayerPlan even_plan(const std::vector<int>& sublayers, double heigh
   return mesh::LayerPlan::from_parts(std::move(parts));
 }
 
+/// Caps and walls, all of face tag 0, found by looking at every neighbour of every cell.
+inline void add_boundary_by_neighbours(mesh::PrismMeshParts& parts) {
+  const mesh::PlanarMesh& planar = parts.planar;
+  const mesh::LayerPlan& plan = parts.plan;
+  const auto present = [&](std::int32_t slab, std::int32_t t) {
+    if (slab < 0 || slab >= plan.num_slabs() || t < 0) return false;
+    const auto region = static_cast<std::size_t>(planar.regions()[static_cast<std::size_t>(t)]);
+    return parts.column_tags[region * static_cast<std::size_t>(plan.num_slabs()) + static_cast<std::size_t>(slab)] >= 0;
+  };
+  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> left_of;
+  for (std::int32_t t = 0; t < planar.num_triangles(); ++t) {
+    const auto& corners = planar.triangles()[static_cast<std::size_t>(t)];
+    for (std::size_t i = 0; i < 3; ++i) left_of[{corners[i], corners[(i + 1) % 3]}] = t;
+  }
+  for (std::int32_t slab = 0; slab <= plan.num_slabs(); ++slab) {
+    for (std::int32_t t = 0; t < planar.num_triangles(); ++t) {
+      if (present(slab - 1, t) != present(slab, t)) {
+        parts.caps.push_back({0, plan.first_sublayer(slab), t, present(slab - 1, t)});
+      }
+    }
+    for (const auto& [edge, t] : left_of) {
+      const auto mate = left_of.find({edge.second, edge.first});
+      const bool has_mate = mate != left_of.end() && present(slab, mate->second);
+      if (present(slab, t) && !has_mate) parts.walls.push_back({0, slab, edge.first, edge.second});
+    }
+  }
+}
+
 /// The mesh by definition: every present prism and node in maps, ids counted one by one.
 struct ExplicitMesh {
   std::map<std::pair<std::int32_t, std::int32_t>, std::int64_t> node_ids;  ///< (level, vertex)

@@ -39,7 +39,7 @@ using testing::grid;
 using testing::spell_out;
 using testing::turned;
 
-/// Parts whose volume tag of (region, slab) is given, -1 = void. Boundary faces are found by looking at every neighbour.
+/// Parts whose volume tag of (region, slab) is given, -1 = void.
 PrismMeshParts parts_of(const PlanarMesh& planar, const LayerPlan& plan, const std::vector<std::int32_t>& column_tags,
                         std::int32_t num_tags) {
   PrismMeshParts parts;
@@ -58,28 +58,7 @@ PrismMeshParts parts_of(const PlanarMesh& planar, const LayerPlan& plan, const s
   face.name = "side";
   parts.face_tags.push_back(face);
   parts.column_tags = column_tags;
-  const auto present = [&](std::int32_t slab, std::int32_t t) {
-    if (slab < 0 || slab >= plan.num_slabs() || t < 0) return false;
-    const auto region = static_cast<std::size_t>(planar.regions()[static_cast<std::size_t>(t)]);
-    return column_tags[region * static_cast<std::size_t>(plan.num_slabs()) + static_cast<std::size_t>(slab)] >= 0;
-  };
-  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> left_of;
-  for (std::int32_t t = 0; t < planar.num_triangles(); ++t) {
-    const auto& corners = planar.triangles()[static_cast<std::size_t>(t)];
-    for (std::size_t i = 0; i < 3; ++i) left_of[{corners[i], corners[(i + 1) % 3]}] = t;
-  }
-  for (std::int32_t slab = 0; slab <= plan.num_slabs(); ++slab) {
-    for (std::int32_t t = 0; t < planar.num_triangles(); ++t) {
-      if (present(slab - 1, t) != present(slab, t)) {
-        parts.caps.push_back({0, plan.first_sublayer(slab), t, present(slab - 1, t)});
-      }
-    }
-    for (const auto& [edge, t] : left_of) {
-      const auto mate = left_of.find({edge.second, edge.first});
-      const bool has_mate = mate != left_of.end() && present(slab, mate->second);
-      if (present(slab, t) && !has_mate) parts.walls.push_back({0, slab, edge.first, edge.second});
-    }
-  }
+  testing::add_boundary_by_neighbours(parts);
   return parts;
 }
 
