@@ -36,8 +36,8 @@ geometry::Box parse_box(const std::string& text) {
     throw Error(ErrorCode::usage,
                 fmt::format("--region '{}': expected four lengths xmin,ymin,xmax,ymax, e.g. 10mm,5mm,30mm,20mm", text));
   geometry::Box box;
-  box.add({parse_length(parts[0]), parse_length(parts[1])});
-  box.add({parse_length(parts[2]), parse_length(parts[3])});
+  box.add(geometry::Point{parse_length(parts[0]), parse_length(parts[1])});
+  box.add(geometry::Point{parse_length(parts[2]), parse_length(parts[3])});
   if (box.min.x >= box.max.x || box.min.y >= box.max.y)
     throw Error(ErrorCode::usage, fmt::format("--region '{}' has no area", text));
   return box;
