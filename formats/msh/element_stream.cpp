@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "formats/msh/group_names.hpp"
+#include "formats/tags_json/group_names.hpp"
 #include "pcbmesh/base/error.hpp"
 
 namespace pcbmesh::formats::msh {
@@ -81,7 +81,7 @@ void ElementStream::survey_faces() {
   const auto z = mesh_.plan().z_m();
   std::vector<std::string> names;
   for (const mesh::FaceTag& tag : mesh_.face_tags()) names.push_back(tag.name);
-  names = group_names(names);
+  names = tags_json::group_names(names);
   for (std::size_t i = 0; i < names.size(); ++i) {
     const mesh::FaceTag& tag = mesh_.face_tags()[i];
     const auto tag_index = static_cast<std::int32_t>(i);
@@ -138,7 +138,7 @@ void ElementStream::survey_volumes() {
   }
   std::vector<std::string> names;
   for (const mesh::VolumeTag& tag : mesh_.volume_tags()) names.push_back(tag.name);
-  names = group_names(names);
+  names = tags_json::group_names(names);
   for (std::size_t i = 0; i < num_tags; ++i) {
     const mesh::VolumeTag& tag = mesh_.volume_tags()[i];
     groups_.push_back({3, tag.id, names[i], extents[i].value()});

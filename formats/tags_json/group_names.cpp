@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "formats/msh/group_names.hpp"
+#include "formats/tags_json/group_names.hpp"
 
 #include <functional>
 #include <set>
 #include <string_view>
 
-namespace pcbmesh::formats::msh {
+namespace pcbmesh::formats::tags_json {
 namespace {
 
 std::string_view cut(std::string_view name, std::size_t most) {
@@ -15,12 +15,36 @@ std::string_view cut(std::string_view name, std::size_t most) {
   return name.substr(0, most);
 }
 
-std::string cleaned(std::string name) {
-  for (char& c : name) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = ' ';
-    if (c == '"') c = '\'';
+/// Bytes of the UTF-8 character at the front, 0 if it is none.
+std::size_t character_bytes(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned>(static_cast<unsigned char>(text[i])); };
+  const unsigned lead = byte(0);
+  if (lead < 0x80) return 1;
+  const std::size_t size = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : 2;
+  if (lead < 0xC2 || lead > 0xF4 || text.size() < size) return 0;
+  unsigned code = lead & (0xFFU >> (size + 1));
+  for (std::size_t i = 1; i < size; ++i) {
+    if ((byte(i) & 0xC0U) != 0x80U) return 0;
+    code = code << 6 | (byte(i) & 0x3FU);
   }
-  return name.empty() ? "unnamed" : name;
+  constexpr unsigned least[] = {0, 0, 0x80, 0x800, 0x10000};
+  return code < least[size] || code > 0x10FFFF || (code >= 0xD800 && code < 0xE000) ? 0 : size;
+}
+
+std::string cleaned(std::string_view name) {
+  std::string out;
+  while (!name.empty()) {
+    const std::size_t size = character_bytes(name);
+    const char c = name.front();
+    if (size > 1)
+      out += name.substr(0, size);
+    else if (size == 0)
+      out += '?';
+    else
+      out += static_cast<unsigned char>(c) < 0x20 || c == 0x7F ? ' ' : c == '"' ? '\'' : c;
+    name.remove_prefix(size > 1 ? size : 1);
+  }
+  return out.empty() ? "unnamed" : out;
 }
 
 }  // namespace
@@ -46,4 +70,4 @@ std::vector<std::string> group_names(std::span<const std::string> names) {
   return out;
 }
 
-}  // namespace pcbmesh::formats::msh
+}  // namespace pcbmesh::formats::tags_json
