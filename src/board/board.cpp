@@ -24,14 +24,17 @@ void require_figure(const BoardParts& parts, const geometry::Figure& figure, std
   const geometry::Path& path = figure.path;
   if (path.points.empty()) throw Error(ErrorCode::board_invalid, fmt::format("{} without points", what), spot);
   for (geometry::Point p : path.points) require_place(parts, p, line);
-  if (figure.pen < 0 || figure.pen > max_coordinate_nm) throw Error(ErrorCode::board_invalid, fmt::format("{} with width {} nm", what, figure.pen), spot);
+  if (figure.pen < 0 || figure.pen > max_coordinate_nm)
+    throw Error(ErrorCode::board_invalid, fmt::format("{} with width {} nm", what, figure.pen), spot);
   std::int32_t last = -1;
   for (std::int32_t i : path.arc_starts) {
     const auto n = static_cast<std::int32_t>(path.points.size());
-    if (i <= last || i >= n || (!path.closed && i + 2 >= n) || n < 3) throw Error(ErrorCode::board_invalid, fmt::format("{} with a broken arc list", what), spot);
+    if (i <= last || i >= n || (!path.closed && i + 2 >= n) || n < 3)
+      throw Error(ErrorCode::board_invalid, fmt::format("{} with a broken arc list", what), spot);
     last = i;
   }
-  if (!figure.filled && figure.pen == 0) throw Error(ErrorCode::board_invalid, fmt::format("{} without area: neither filled nor drawn with a pen", what), spot);
+  if (!figure.filled && figure.pen == 0)
+    throw Error(ErrorCode::board_invalid, fmt::format("{} without area: neither filled nor drawn with a pen", what), spot);
 }
 
 /// Levenshtein distance, stopped at `limit`.
@@ -55,11 +58,16 @@ std::size_t edit_distance(std::string_view a, std::string_view b, std::size_t li
 
 std::string_view name_of(ShapeKind kind) {
   switch (kind) {
-    case ShapeKind::track: return "track";
-    case ShapeKind::via: return "via";
-    case ShapeKind::pad: return "pad";
-    case ShapeKind::fill: return "fill";
-    case ShapeKind::graphic: return "graphic";
+    case ShapeKind::track:
+      return "track";
+    case ShapeKind::via:
+      return "via";
+    case ShapeKind::pad:
+      return "pad";
+    case ShapeKind::fill:
+      return "fill";
+    case ShapeKind::graphic:
+      return "graphic";
   }
   return "shape";
 }
@@ -73,8 +81,12 @@ Board Board::from_parts(BoardParts parts) {
     Spot spot = file;
     spot.layer = layer.name;
     if (layer.thickness_nm <= 0)
-      throw Error(ErrorCode::stackup_invalid, fmt::format("layer has thickness {} nm; every layer needs a thickness above 0: mend the stackup", layer.thickness_nm), spot);
-    if (layer.thickness_nm > max_coordinate_nm / 10) throw Error(ErrorCode::stackup_invalid, "layer is thicker than 100 mm", spot);
+      throw Error(
+          ErrorCode::stackup_invalid,
+          fmt::format("layer has thickness {} nm; every layer needs a thickness above 0: mend the stackup", layer.thickness_nm),
+          spot);
+    if (layer.thickness_nm > max_coordinate_nm / 10)
+      throw Error(ErrorCode::stackup_invalid, "layer is thicker than 100 mm", spot);
     if (layer.material < 0 || static_cast<std::size_t>(layer.material) >= parts.materials.size())
       throw Error(ErrorCode::stackup_invalid, "layer has no material", spot);
     if (layer.kind == LayerKind::copper) board.copper_layers_.push_back(static_cast<std::int32_t>(i));
@@ -82,8 +94,12 @@ Board Board::from_parts(BoardParts parts) {
   }
   if (board.copper_layers_.empty()) throw Error(ErrorCode::stackup_invalid, "the stackup has no copper layer", file);
   for (const Material& m : parts.materials)
-    if (!(m.eps_r > 0) || !(m.mu_r > 0) || !(m.tan_delta >= 0) || !(m.sigma_s_per_m >= 0) || !std::isfinite(m.eps_r) || !std::isfinite(m.mu_r) || !std::isfinite(m.tan_delta) || !std::isfinite(m.sigma_s_per_m))
-      throw Error(ErrorCode::board_invalid, fmt::format("material {} has impossible values (eps_r {}, tan_delta {}, mu_r {}, sigma {})", m.name, m.eps_r, m.tan_delta, m.mu_r, m.sigma_s_per_m), file);
+    if (!(m.eps_r > 0) || !(m.mu_r > 0) || !(m.tan_delta >= 0) || !(m.sigma_s_per_m >= 0) || !std::isfinite(m.eps_r) ||
+        !std::isfinite(m.mu_r) || !std::isfinite(m.tan_delta) || !std::isfinite(m.sigma_s_per_m))
+      throw Error(ErrorCode::board_invalid,
+                  fmt::format("material {} has impossible values (eps_r {}, tan_delta {}, mu_r {}, sigma {})", m.name, m.eps_r,
+                              m.tan_delta, m.mu_r, m.sigma_s_per_m),
+                  file);
   std::unordered_set<std::string_view> nets;
   for (const std::string& net : parts.nets)
     if (!nets.insert(net).second) throw Error(ErrorCode::board_invalid, fmt::format("two nets are called '{}'", net), file);
@@ -92,18 +108,26 @@ Board Board::from_parts(BoardParts parts) {
   const auto num_nets = static_cast<std::int32_t>(parts.nets.size());
   for (const Shape& shape : parts.shapes) {
     if (shape.copper_layer < 0 || shape.copper_layer >= num_copper || shape.net < no_net || shape.net >= num_nets)
-      throw Error(ErrorCode::board_invalid, fmt::format("{} names copper layer {} of {} and net {} of {}", name_of(shape.kind), shape.copper_layer, num_copper, shape.net, num_nets), {.file = parts.source, .line = shape.line});
+      throw Error(ErrorCode::board_invalid,
+                  fmt::format("{} names copper layer {} of {} and net {} of {}", name_of(shape.kind), shape.copper_layer,
+                              num_copper, shape.net, num_nets),
+                  {.file = parts.source, .line = shape.line});
     require_figure(parts, shape.figure, shape.line, name_of(shape.kind));
   }
   for (const Drill& drill : parts.drills) {
-    if (drill.first_copper < 0 || drill.last_copper >= num_copper || drill.first_copper > drill.last_copper || drill.net < no_net || drill.net >= num_nets)
-      throw Error(ErrorCode::board_invalid, fmt::format("hole spans copper layers {} to {} of {}", drill.first_copper, drill.last_copper, num_copper), {.file = parts.source, .line = drill.line});
-    if (drill.figure.pen <= 0) throw Error(ErrorCode::board_invalid, "hole with diameter 0", {.file = parts.source, .line = drill.line});
+    if (drill.first_copper < 0 || drill.last_copper >= num_copper || drill.first_copper > drill.last_copper ||
+        drill.net < no_net || drill.net >= num_nets)
+      throw Error(ErrorCode::board_invalid,
+                  fmt::format("hole spans copper layers {} to {} of {}", drill.first_copper, drill.last_copper, num_copper),
+                  {.file = parts.source, .line = drill.line});
+    if (drill.figure.pen <= 0 && !drill.figure.filled)
+      throw Error(ErrorCode::board_invalid, "hole with diameter 0", {.file = parts.source, .line = drill.line});
     require_figure(parts, drill.figure, drill.line, "hole");
   }
   for (const Outline& outline : parts.outlines) {
     const auto check_path = [&](const geometry::Path& path, std::string_view what) {
-      if (!path.closed || path.points.size() < 3) throw Error(ErrorCode::outline_invalid, fmt::format("{} is not a closed outline", what), file);
+      if (!path.closed || path.points.size() < 3)
+        throw Error(ErrorCode::outline_invalid, fmt::format("{} is not a closed outline", what), file);
       for (geometry::Point p : path.points) require_place(parts, p, 0);
     };
     check_path(outline.outer, "board outline");
@@ -126,7 +150,8 @@ std::optional<std::int32_t> Board::find_net(std::string_view name) const {
 std::vector<std::string> Board::similar_nets(std::string_view name, std::size_t most) const {
   const auto lower = [](std::string_view text) {
     std::string out(text);
-    std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) { return static_cast<char>(c >= 'A' && c <= 'Z' ? c + 32 : c); });
+    std::transform(out.begin(), out.end(), out.begin(),
+                   [](unsigned char c) { return static_cast<char>(c >= 'A' && c <= 'Z' ? c + 32 : c); });
     return out;
   };
   const std::string wanted = lower(name);
@@ -134,7 +159,9 @@ std::vector<std::string> Board::similar_nets(std::string_view name, std::size_t 
   for (const std::string& net : parts_->nets) {
     const std::string candidate = lower(net);
     std::size_t score = edit_distance(wanted, candidate, 4);
-    if (!wanted.empty() && (candidate.find(wanted) != std::string::npos || (!candidate.empty() && wanted.find(candidate) != std::string::npos))) score = std::min<std::size_t>(score, 2);
+    if (!wanted.empty() &&
+        (candidate.find(wanted) != std::string::npos || (!candidate.empty() && wanted.find(candidate) != std::string::npos)))
+      score = std::min<std::size_t>(score, 2);
     if (score <= std::max<std::size_t>(2, name.size() / 3)) scored.emplace_back(score, net);
   }
   std::sort(scored.begin(), scored.end());

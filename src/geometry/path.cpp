@@ -118,6 +118,40 @@ Ring capsule(Point a, Point b, Nm width, const ArcOptions& options) {
   return ring;
 }
 
+/// Round-ended stroke of one arc as a single ring: outer side, cap, inner side, cap. Empty if the arc is straight, too tight
+/// for the pen, or its ends come so close that the caps would overlap: then the caller strokes chord by chord.
+Ring arc_band(Point start, Point mid, Point end, Nm width, const ArcOptions& options) {
+  std::optional<Circle> circle = circle_through(start, mid, end);
+  const double half = static_cast<double>(width) / 2;
+  if (!circle || circle->r < 1.25 * half || start == end) return {};
+  int sign = orientation(start, mid, end);
+  if (sign < 0) std::swap(start, end);  // counter-clockwise about the centre
+  const auto angle = [&](Point p) {
+    return std::atan2(static_cast<double>(p.y) - circle->y, static_cast<double>(p.x) - circle->x);
+  };
+  const double from = angle(start);
+  double to = angle(end);
+  while (to <= from) to += 2 * std::numbers::pi;
+  const double gap = 2 * std::numbers::pi - (to - from);
+  if (sign == 0 || gap * circle->r < 2.5 * half) return {};
+  const auto at = [&](double radius, double a) {
+    return rounded(circle->x + radius * std::cos(a), circle->y + radius * std::sin(a));
+  };
+  const auto cap = [&](Point p) { return Circle{static_cast<double>(p.x), static_cast<double>(p.y), half}; };
+  const double outer = circle->r + half, inner = circle->r - half;
+  Ring ring;
+  ring.push_back(at(outer, from));
+  append_corners(ring, {circle->x, circle->y, outer}, from, to, 1, options);
+  ring.push_back(at(outer, to));
+  append_corners(ring, cap(end), to, to + std::numbers::pi, 1, options);
+  ring.push_back(at(inner, to));
+  append_corners(ring, {circle->x, circle->y, inner}, to, from, -1, options);
+  ring.push_back(at(inner, from));
+  append_corners(ring, cap(start), from + std::numbers::pi, from + 2 * std::numbers::pi, 1, options);
+  drop_repeats(ring, true);
+  return ring;
+}
+
 /// A polygon whose corners all turn left and once round is simple.
 bool is_convex(const Ring& ring) {
   const std::size_t n = ring.size();
@@ -131,6 +165,34 @@ bool is_convex(const Ring& ring) {
     turned += std::atan2(ux * vy - uy * vx, ux * vx + uy * vy);
   }
   return turned < 3 * std::numbers::pi;
+}
+
+/// One ring per segment, one per arc where it can be a band, else one per chord.
+void append_stroke(std::vector<Ring>& rings, const Path& path, Nm pen, const ArcOptions& options) {
+  const std::size_t n = path.points.size();
+  if (n == 1) rings.push_back(circle(path.points[0], pen / 2, options));
+  std::size_t arc = 0;
+  for (std::size_t i = 0; i + (path.closed ? 0 : 1) < n && n > 1;) {
+    const Point a = path.points[i];
+    if (arc < path.arc_starts.size() && static_cast<std::size_t>(path.arc_starts[arc]) == i && (path.closed || i + 2 < n)) {
+      const Point mid = path.points[(i + 1) % n], b = path.points[(i + 2) % n];
+      Ring band = arc_band(a, mid, b, pen, options);
+      if (!band.empty()) {
+        rings.push_back(std::move(band));
+      } else {
+        Ring chords;
+        append_arc(chords, a, mid, b, options);
+        chords.push_back(b);
+        for (std::size_t k = 0; k + 1 < chords.size(); ++k) rings.push_back(capsule(chords[k], chords[k + 1], pen, options));
+      }
+      ++arc;
+      i += 2;
+    } else {
+      const Point b = path.points[(i + 1) % n];
+      if (a != b || n == 2) rings.push_back(capsule(a, b, pen, options));
+      ++i;
+    }
+  }
 }
 
 }  // namespace
@@ -177,12 +239,7 @@ std::vector<Ring> outline(const Figure& figure, const ArcOptions& options, bool&
     simple = is_convex(ring);
     rings.push_back(std::move(ring));
   }
-  if (figure.pen > 0) {
-    const std::size_t n = corners.size();
-    if (n == 1) rings.push_back(circle(corners[0], figure.pen / 2, options));
-    for (std::size_t i = 0; i + 1 < n; ++i) rings.push_back(capsule(corners[i], corners[i + 1], figure.pen, options));
-    if (figure.path.closed && n > 2) rings.push_back(capsule(corners[n - 1], corners[0], figure.pen, options));
-  }
+  if (figure.pen > 0) append_stroke(rings, figure.path, figure.pen, options);
   std::erase_if(rings, [](const Ring& ring) { return ring.size() < 3; });
   return rings;
 }

@@ -9,7 +9,8 @@ namespace pcbmesh::mesh {
 
 LayerPlan LayerPlan::from_parts(LayerPlanParts parts) {
   const auto reject = [](const char* why) { throw Error(ErrorCode::layering_invalid, why); };
-  if (parts.slab.empty() || parts.z_m.size() != parts.slab.size() + 1) reject("a layer plan needs one level more than sub-layers");
+  if (parts.slab.empty() || parts.z_m.size() != parts.slab.size() + 1)
+    reject("a layer plan needs one level more than sub-layers");
   LayerPlan plan;
   for (std::size_t k = 0; k < parts.slab.size(); ++k) {
     if (!(parts.z_m[k + 1] > parts.z_m[k])) reject("levels of the layer plan must increase strictly");
@@ -27,6 +28,8 @@ double LayerPlan::height_m(std::int32_t sublayer) const {
   return parts_->z_m[k + 1] - parts_->z_m[k];
 }
 
-std::int32_t LayerPlan::first_sublayer(std::int32_t slab) const { return first_[static_cast<std::size_t>(slab)]; }
+std::int32_t LayerPlan::first_sublayer(std::int32_t slab) const {
+  return first_[static_cast<std::size_t>(slab)];
+}
 
 }  // namespace pcbmesh::mesh

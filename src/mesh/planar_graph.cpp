@@ -26,7 +26,8 @@ PlanarGraph PlanarGraph::from_parts(PlanarGraphParts parts) {
   std::vector<std::tuple<std::int32_t, std::int32_t, std::int32_t>> flow;  // vertex, body, delta
   flow.reserve(parts.increments.size() * 2);
   for (std::size_t e = 0; e < parts.edges.size(); ++e) {
-    const auto first = static_cast<std::size_t>(parts.increment_offsets[e]), last = static_cast<std::size_t>(parts.increment_offsets[e + 1]);
+    const auto first = static_cast<std::size_t>(parts.increment_offsets[e]),
+               last = static_cast<std::size_t>(parts.increment_offsets[e + 1]);
     PCBMESH_ASSERT(first < last);
     for (std::size_t k = first; k < last; ++k) {
       const Increment& inc = parts.increments[k];
@@ -39,7 +40,8 @@ PlanarGraph PlanarGraph::from_parts(PlanarGraphParts parts) {
   for (std::size_t i = 0; i < flow.size();) {
     std::int64_t sum = 0;
     std::size_t j = i;
-    for (; j < flow.size() && std::get<0>(flow[j]) == std::get<0>(flow[i]) && std::get<1>(flow[j]) == std::get<1>(flow[i]); ++j) sum += std::get<2>(flow[j]);
+    for (; j < flow.size() && std::get<0>(flow[j]) == std::get<0>(flow[i]) && std::get<1>(flow[j]) == std::get<1>(flow[i]); ++j)
+      sum += std::get<2>(flow[j]);
     PCBMESH_ASSERT(sum == 0);
     i = j;
   }
@@ -49,7 +51,8 @@ PlanarGraph PlanarGraph::from_parts(PlanarGraphParts parts) {
 }
 
 std::span<const Increment> PlanarGraph::increments(std::size_t edge) const {
-  const auto first = static_cast<std::size_t>(parts_->increment_offsets[edge]), last = static_cast<std::size_t>(parts_->increment_offsets[edge + 1]);
+  const auto first = static_cast<std::size_t>(parts_->increment_offsets[edge]),
+             last = static_cast<std::size_t>(parts_->increment_offsets[edge + 1]);
   return std::span(parts_->increments).subspan(first, last - first);
 }
 

@@ -28,20 +28,23 @@ PlanarMesh PlanarMesh::from_parts(PlanarMeshParts parts) {
 
 std::span<const std::int32_t> PlanarMesh::bodies_of_region(std::int32_t region) const {
   const auto r = static_cast<std::size_t>(region);
-  const auto first = static_cast<std::size_t>(parts_->region_body_offsets[r]), last = static_cast<std::size_t>(parts_->region_body_offsets[r + 1]);
+  const auto first = static_cast<std::size_t>(parts_->region_body_offsets[r]),
+             last = static_cast<std::size_t>(parts_->region_body_offsets[r + 1]);
   return std::span(parts_->region_bodies).subspan(first, last - first);
 }
 
 double PlanarMesh::area_m2(std::int32_t t) const {
   const auto& [a, b, c] = parts_->triangles[static_cast<std::size_t>(t)];
-  const auto &p = parts_->points_m[static_cast<std::size_t>(a)], &q = parts_->points_m[static_cast<std::size_t>(b)], &r = parts_->points_m[static_cast<std::size_t>(c)];
+  const auto &p = parts_->points_m[static_cast<std::size_t>(a)], &q = parts_->points_m[static_cast<std::size_t>(b)],
+             &r = parts_->points_m[static_cast<std::size_t>(c)];
   return 0.5 * ((q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]));
 }
 
 std::array<double, 3> PlanarMesh::squared_edges_m2(std::int32_t t) const {
   const auto& corners = parts_->triangles[static_cast<std::size_t>(t)];
   const auto squared = [&](int i, int j) {
-    const auto &p = parts_->points_m[static_cast<std::size_t>(corners[static_cast<std::size_t>(i)])], &q = parts_->points_m[static_cast<std::size_t>(corners[static_cast<std::size_t>(j)])];
+    const auto &p = parts_->points_m[static_cast<std::size_t>(corners[static_cast<std::size_t>(i)])],
+               &q = parts_->points_m[static_cast<std::size_t>(corners[static_cast<std::size_t>(j)])];
     const double dx = q[0] - p[0], dy = q[1] - p[1];
     return dx * dx + dy * dy;
   };

@@ -18,7 +18,8 @@ Model Model::from_parts(ModelParts parts) {
     PCBMESH_ASSERT(i == 0 || slab.z_bottom_nm == parts.slabs[i - 1].z_top_nm);
     PCBMESH_ASSERT(slab.material >= 0 && slab.material < num_materials && slab.outside >= -1 && slab.outside < num_materials);
   }
-  PCBMESH_ASSERT(parts.bodies.size() >= 2 && parts.bodies[0].kind == BodyKind::domain && parts.bodies[1].kind == BodyKind::board);
+  PCBMESH_ASSERT(parts.bodies.size() >= 2 && parts.bodies[0].kind == BodyKind::domain &&
+                 parts.bodies[1].kind == BodyKind::board);
   for (std::size_t i = 0; i < parts.bodies.size(); ++i) {
     const Body& body = parts.bodies[i];
     PCBMESH_ASSERT(body.first_slab >= 0 && body.first_slab <= body.last_slab && body.last_slab < num_slabs);

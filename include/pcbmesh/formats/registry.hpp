@@ -53,6 +53,9 @@ struct MeshFormat {
 [[nodiscard]] std::span<const BoardFormat* const> board_formats();
 [[nodiscard]] std::span<const MeshFormat* const> mesh_formats();
 
+/// Mesh format by name if given, else by ending; nullptr if there is none.
+[[nodiscard]] const MeshFormat* find_mesh_format(const std::filesystem::path& file, std::string_view format = {});
+
 /// Reads a board: by format name if given, else by a unique "yes" from sniffing, else by extension.
 /// Files ending in .xz or .gz are unpacked on the fly.
 /// @throws Error file_unreadable (201), format_unknown (204) showing the head of the file and the list.

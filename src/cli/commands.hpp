@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+/// One command of the program per file. Each adds itself to the parser; the returned function runs it and gives the exit code.
+namespace pcbmesh::cli {
+
+/// A sub-command and what to do when it was chosen.
+struct Command {
+  CLI::App* parser = nullptr;
+  std::function<int()> run;
+};
+
+[[nodiscard]] Command add_mesh_command(CLI::App& program);
+[[nodiscard]] Command add_inspect_command(CLI::App& program);
+[[nodiscard]] Command add_check_command(CLI::App& program);
+[[nodiscard]] Command add_formats_command(CLI::App& program);
+
+}  // namespace pcbmesh::cli

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "src/cli/mesh_report.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "pcbmesh/base/version.hpp"
+#include "src/cli/terminal.hpp"
+
+namespace pcbmesh::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double peak_memory_mib() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024.0;
+}
+
+Json diagnostics_json(const Diagnostics& diagnostics) {
+  Json out = Json::array();
+  for (const Diagnostic& d : diagnostics.entries()) {
+    Json spots = Json::array();
+    for (const Spot& spot : d.spots) spots.push_back(spot.text());
+    out.push_back({{"severity", d.severity == Severity::warning ? "warning" : "note"},
+                   {"code", d.code},
+                   {"text", d.text},
+                   {"count", d.count},
+                   {"places", spots}});
+  }
+  return out;
+}
+
+/// Ledger entries by largest move; the whole ledger of a big board has thousands of lines, so the worst hundred are kept.
+Json ledger_json(const std::vector<overlay::SnapRecord>& ledger) {
+  constexpr std::size_t most = 100;
+  std::vector<overlay::SnapRecord> sorted = ledger;
+  std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.max_move_nm > b.max_move_nm; });
+  if (sorted.size() > most) sorted.resize(most);
+  Json out = Json::array();
+  for (const overlay::SnapRecord& r : sorted)
+    out.push_back({{"body", r.body},
+                   {"moved", r.num_moved},
+                   {"max_move_um", static_cast<double>(r.max_move_nm) * 1e-3},
+                   {"at_mm", {static_cast<double>(r.at.x) * 1e-6, static_cast<double>(r.at.y) * 1e-6}},
+                   {"area_before_mm2", r.area_before_mm2},
+                   {"area_after_mm2", r.area_after_mm2}});
+  return out;
+}
+
+}  // namespace
+
+std::string report_json(const MeshRun& run) {
+  const pipeline::MeshBoardResult& r = run.result;
+  Json times = Json::object();
+  double total = 0;
+  for (const pipeline::StepTime& t : r.times) {
+    times[t.step] = t.cpu_s;
+    total += t.cpu_s;
+  }
+  times["total"] = total;
+  Json out{{"pcbmesh", version()},
+           {"board", run.board.source()},
+           {"counts",
+            {{"triangles", r.mesh.planar().num_triangles()},
+             {"sublayers", r.mesh.plan().num_sublayers()},
+             {"prisms", r.mesh.num_prisms()},
+             {"nodes", r.mesh.num_nodes()},
+             {"boundary_triangles", r.mesh.num_boundary_triangles()},
+             {"boundary_quads", r.mesh.num_boundary_quads()},
+             {"volume_groups", r.mesh.volume_tags().size()},
+             {"face_groups", r.mesh.face_tags().size()}}},
+           {"overlay",
+            {{"tolerance_um", static_cast<double>(r.overlay.tolerance_nm) * 1e-3},
+             {"attempts", r.overlay.attempts},
+             {"vertices_in", r.overlay.num_input_vertices},
+             {"vertices_snapped", r.overlay.num_snapped},
+             {"crossings", r.overlay.num_crossings},
+             {"passes", r.overlay.num_passes},
+             {"worst_area_error", r.overlay.worst_body_area_error},
+             {"total_area_error", r.overlay.total_area_error},
+             {"largest_moves", ledger_json(r.ledger)}}},
+           {"triangulation",
+            {{"longest_edge_bound_m", r.fed_back ? r.common_height_m : static_cast<double>(*r.resolved.longest_edge) * 1e-9},
+             {"min_angle_deg", r.triangulate.min_angle_deg},
+             {"triangles_below_bound", r.triangulate.num_below_bound},
+             {"input_vertices", r.triangulate.num_input_vertices},
+             {"steiner_vertices", r.triangulate.num_steiner}}},
+           {"heights",
+            {{"policy", study::name_of(r.resolved.policy)},
+             {"sublayers", study::name_of(r.resolved.sublayers)},
+             {"common_height_m", r.common_height_m},
+             {"fed_back", r.fed_back},
+             {"optimal_min_m", r.heights.minimum},
+             {"optimal_average_m", r.heights.average},
+             {"optimal_max_m", r.heights.maximum}}},
+           {"quality",
+            {{"mean_triangle", r.quality.mean_triangle},
+             {"min_triangle", r.quality.min_triangle},
+             {"mean_prism", r.quality.mean_prism},
+             {"volume_weighted_prism", r.quality.volume_weighted_prism},
+             {"min_prism", r.quality.min_prism},
+             {"quantile1_prism", r.quality.quantile1_prism},
+             {"shortest_edge_m", r.quality.shortest_edge_m},
+             {"longest_edge_m", r.quality.longest_edge_m}}},
+           {"cpu_s", times},
+           {"peak_memory_mib", peak_memory_mib()},
+           {"diagnostics", diagnostics_json(r.diagnostics)},
+           {"check", run.check == nullptr ? Json(nullptr) : Json::parse(validation::to_json(*run.check))},
+           {"files", run.files}};
+  return out.dump(2);
+}
+
+std::string report_text(const MeshRun& run) {
+  const pipeline::MeshBoardResult& r = run.result;
+  const auto line = [](std::string_view name, const std::string& text) { return fmt::format("  {:<13} {}\n", name, text); };
+  std::string out = fmt::format("{}\n", run.board.source());
+  out += line("outlines", fmt::format("tolerance {}, {} of {} vertices moved, worst copper area error {:.2g} %",
+                                      format_length(r.overlay.tolerance_nm), grouped(r.overlay.num_snapped),
+                                      grouped(r.overlay.num_input_vertices), 100 * r.overlay.worst_body_area_error));
+  out += line("triangles",
+              fmt::format("{}, smallest angle {:.1f} deg, {} below {:.1f} deg", grouped(r.mesh.planar().num_triangles()),
+                          r.triangulate.min_angle_deg, grouped(r.triangulate.num_below_bound), r.resolved.min_angle_deg));
+  const std::string height = r.common_height_m > 0 ? fmt::format(", common height {:.4g} um{}", r.common_height_m * 1e6,
+                                                                 r.fed_back ? ", fed back as longest edge" : "")
+                                                   : "";
+  out += line("sub-layers", fmt::format("{} in {} slabs (policy {}{})", r.mesh.plan().num_sublayers(),
+                                        r.mesh.plan().num_slabs(), study::name_of(r.resolved.policy), height));
+  out += line("prisms", fmt::format("{} on {} nodes, {} volume groups, {} face groups", grouped(r.mesh.num_prisms()),
+                                    grouped(r.mesh.num_nodes()), r.mesh.volume_tags().size(), r.mesh.face_tags().size()));
+  out +=
+      line("quality", fmt::format("triangles {:.4f}, prisms {:.4f} (by volume {:.4f}, worst {:.4f})", r.quality.mean_triangle,
+                                  r.quality.mean_prism, r.quality.volume_weighted_prism, r.quality.min_prism));
+  double total = 0;
+  for (const pipeline::StepTime& t : r.times) total += t.cpu_s;
+  out += line("effort", fmt::format("{:.2f} s CPU to mesh, peak memory {:.0f} MiB", total, peak_memory_mib()));
+  if (run.check == nullptr) {
+    out += line("check", "not run");
+  } else {
+    std::int64_t errors = 0;
+    for (const validation::Finding& f : run.check->findings)
+      errors += f.severity == validation::FindingSeverity::error ? f.count : 0;
+    out += line("check", run.check->passed() ? fmt::format("passed: {} checks, no error", run.check->checks.size())
+                                             : fmt::format("FAILED with {} errors", grouped(errors)));
+    for (const validation::Finding& f : run.check->findings)
+      out += fmt::format("    {} [{}] {}\n", f.severity == validation::FindingSeverity::error ? "error" : "warning", f.code,
+                         f.text);
+  }
+  for (const std::string& file : run.files) {
+    std::error_code ignored;
+    out += line("wrote",
+                fmt::format("{} ({:.1f} MB)", file, static_cast<double>(std::filesystem::file_size(file, ignored)) * 1e-6));
+  }
+  return out;
+}
+
+}  // namespace pcbmesh::cli

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pcbmesh/board/board.hpp"
+#include "pcbmesh/pipeline/mesh_board.hpp"
+#include "pcbmesh/validation/report.hpp"
+
+namespace pcbmesh::cli {
+
+/// What one mesh run found out: counts, qualities, times, snap ledger, diagnostics, verdict.
+struct MeshRun {
+  const board::Board& board;
+  const pipeline::MeshBoardResult& result;
+  const validation::Report* check = nullptr;  ///< null: not checked
+  std::vector<std::string> files;             ///< written, in order
+};
+
+/// JSON for machines: x.report.json and --json. @unit as the keys say.
+[[nodiscard]] std::string report_json(const MeshRun& run);
+/// The same for people, a dozen lines.
+[[nodiscard]] std::string report_text(const MeshRun& run);
+
+}  // namespace pcbmesh::cli

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "src/cli/study_options.hpp"
+
+#include <fmt/format.h>
+
+#include "pcbmesh/base/error.hpp"
+
+namespace pcbmesh::cli {
+namespace {
+
+/// Splits at commas; a backslash keeps the next character, for names with commas.
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> parts(1);
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '\\' && i + 1 < text.size())
+      parts.back() += text[++i];
+    else if (text[i] == ',')
+      parts.emplace_back();
+    else
+      parts.back() += text[i];
+  }
+  std::erase(parts, "");
+  return parts;
+}
+
+/// "NET", "NET@LAYER" or "@LAYER".
+study::ConductorRule conductor_rule(const std::string& text, study::ConductorMode mode) {
+  const std::size_t at = text.rfind('@');
+  if (at == std::string::npos) return {text, "", mode};
+  return {text.substr(0, at), text.substr(at + 1), mode};
+}
+
+geometry::Box parse_box(const std::string& text) {
+  const std::vector<std::string> parts = split(text);
+  if (parts.size() != 4)
+    throw Error(ErrorCode::usage,
+                fmt::format("--region '{}': expected four lengths xmin,ymin,xmax,ymax, e.g. 10mm,5mm,30mm,20mm", text));
+  geometry::Box box;
+  box.add(geometry::Point{parse_length(parts[0]), parse_length(parts[1])});
+  box.add(geometry::Point{parse_length(parts[2]), parse_length(parts[3])});
+  if (box.min.x >= box.max.x || box.min.y >= box.max.y)
+    throw Error(ErrorCode::usage, fmt::format("--region '{}' has no area", text));
+  return box;
+}
+
+}  // namespace
+
+std::shared_ptr<StudyOptions> add_study_options(CLI::App& command) {
+  auto o = std::make_shared<StudyOptions>();
+  constexpr const char* region = "Region of interest";
+  command.add_option("--study", o->file, "Study JSON; flags override its fields")->check(CLI::ExistingFile)->group(region);
+  command.add_option("--nets", o->nets, "Mesh around these nets, e.g. /USB_P,/USB_N")->group(region);
+  command.add_option("--margin", o->margin, "Growth of the nets' bounding box (default 2mm)")->group(region);
+  command.add_option("--region", o->region, "Mesh a box: xmin,ymin,xmax,ymax; y is up, as inspect prints it")->group(region);
+  constexpr const char* domain = "Conductors and air";
+  command.add_option("--conductors", o->conductors, "solid (copper is meshed) or hollow (its skin is tagged surface|net)")
+      ->group(domain);
+  command.add_option("--hollow", o->hollow, "Make NET, NET@LAYER or @LAYER hollow; repeatable")
+      ->allow_extra_args(false)
+      ->group(domain);
+  command.add_option("--solid", o->solid, "Make NET, NET@LAYER or @LAYER solid; repeatable")
+      ->allow_extra_args(false)
+      ->group(domain);
+  command.add_option("--air", o->air, "Air above and below (default 1mm; 0 = none)")->group(domain);
+  command.add_option("--air-above", o->air_above, "Air above the board")->group(domain);
+  command.add_option("--air-below", o->air_below, "Air below the board")->group(domain);
+  command.add_option("--air-around", o->air_around, "Air beside the whole board (default 0)")->group(domain);
+  constexpr const char* sizes = "Sizes and heights";
+  command
+      .add_option("--frequency", o->frequency, "Highest frequency, e.g. 10GHz: edges at most a third of the local wavelength")
+      ->group(sizes);
+  command.add_option("--longest-edge", o->longest_edge, "Longest triangle edge (default 2mm)")->group(sizes);
+  command.add_option("--min-angle", o->min_angle, "Angle bound in degrees (default 20.7)")->group(sizes);
+  command.add_option("--edge-at-copper", o->edge_at_copper, "Graded size: edge length at copper outlines")->group(sizes);
+  command.add_option("--growth", o->growth, "Graded size: edge length gained per distance (default 0.3)")->group(sizes);
+  command
+      .add_option("--policy", o->policy,
+                  "Common prism height: none, basic, average, maximum, minimum, thinnest_layer, or the paper's case 1 to 5")
+      ->group(sizes);
+  command.add_option("--sublayers", o->sublayers, "Cutting of layers: floor, round, ceil, none, optimal")->group(sizes);
+  command.add_option("--tolerance", o->tolerance, "Snapping tolerance: auto or a length (default auto)")->group(sizes);
+  command.add_option("--arc-sagitta", o->arc_sagitta, "Largest distance of chord and arc (default 5um)")->group(sizes);
+  command.add_option("--unit", o->unit, "Unit written to the mesh: m (default), mm, um")->group(sizes);
+  command.add_option("--max-prisms", o->max_prisms, "Refuse a mesh larger than this (default 2e8)")->group(sizes);
+  return o;
+}
+
+study::Study study_from(const StudyOptions& o) {
+  study::Study s = o.file.empty() ? study::Study{} : study::read_study(o.file);
+  if (!o.nets.empty() && !o.region.empty()) throw Error(ErrorCode::usage, "--nets and --region exclude each other; give one");
+  if (!o.nets.empty()) {
+    s.region = study::RegionKind::nets;
+    s.nets = split(o.nets);
+  }
+  if (!o.margin.empty()) s.margin = parse_length(o.margin);
+  if (!o.region.empty()) {
+    s.region = study::RegionKind::box;
+    s.box = parse_box(o.region);
+  }
+  if (!o.conductors.empty()) s.conductors = study::parse_conductor_mode(o.conductors);
+  for (const std::string& text : o.hollow) s.conductor_rules.push_back(conductor_rule(text, study::ConductorMode::hollow));
+  for (const std::string& text : o.solid) s.conductor_rules.push_back(conductor_rule(text, study::ConductorMode::solid));
+  if (!o.air.empty()) s.air_above = s.air_below = parse_length(o.air);
+  if (!o.air_above.empty()) s.air_above = parse_length(o.air_above);
+  if (!o.air_below.empty()) s.air_below = parse_length(o.air_below);
+  if (!o.air_around.empty()) s.air_around = parse_length(o.air_around);
+  if (!o.frequency.empty()) s.frequency_hz = parse_frequency_hz(o.frequency);
+  if (!o.longest_edge.empty()) s.longest_edge = parse_length(o.longest_edge);
+  if (o.min_angle != 0) s.min_angle_deg = o.min_angle;
+  if (!o.edge_at_copper.empty()) s.edge_at_copper = parse_length(o.edge_at_copper);
+  if (o.growth != 0) s.growth = o.growth;
+  if (!o.policy.empty()) s.policy = study::parse_height_policy(o.policy);
+  if (!o.sublayers.empty()) s.sublayers = study::parse_sublayer_rule(o.sublayers);
+  if (o.tolerance == "auto")
+    s.tolerance.reset();
+  else if (!o.tolerance.empty())
+    s.tolerance = parse_length(o.tolerance);
+  if (!o.arc_sagitta.empty()) s.arcs.sagitta_nm = parse_length(o.arc_sagitta);
+  if (!o.unit.empty()) s.unit = parse_length_unit(o.unit);
+  if (o.max_prisms != 0) {
+    if (!(o.max_prisms >= 1 && o.max_prisms < 1e15))
+      throw Error(ErrorCode::usage, fmt::format("--max-prisms {} is no count", o.max_prisms));
+    s.max_prisms = static_cast<std::int64_t>(o.max_prisms);
+  }
+  study::check(s);
+  return s;
+}
+
+}  // namespace pcbmesh::cli

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "pcbmesh/study/study.hpp"
+
+namespace pcbmesh::cli {
+
+/// The flags of a study, as typed. A study file comes first; flags override its fields.
+struct StudyOptions {
+  std::string file, nets, margin, region, conductors, air, air_above, air_below, air_around, frequency, longest_edge,
+      edge_at_copper, policy, sublayers, tolerance, arc_sagitta, unit;
+  std::vector<std::string> hollow, solid;
+  double min_angle = 0, growth = 0, max_prisms = 0;
+};
+
+/// Adds the flags to a command.
+[[nodiscard]] std::shared_ptr<StudyOptions> add_study_options(CLI::App& command);
+
+/// Study file, then flags. @throws Error usage (101), study_invalid (102).
+[[nodiscard]] study::Study study_from(const StudyOptions& options);
+
+}  // namespace pcbmesh::cli

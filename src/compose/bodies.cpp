@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "src/compose/bodies.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "pcbmesh/geometry/ring_contact.hpp"
+
+namespace pcbmesh::compose {
+namespace {
+
+using board::Board;
+using geometry::Ring;
+using model::Body;
+using model::BodyKind;
+using model::BodyShape;
+using model::ModelParts;
+
+bool is_hollow(const study::Study& study, const std::vector<ResolvedRule>& rules, std::int32_t net, std::int32_t copper_layer) {
+  bool hollow = study.conductors == study::ConductorMode::hollow;
+  for (const ResolvedRule& rule : rules) {
+    if (!rule.any_net && rule.net != net) continue;
+    if (!rule.any_layer && rule.copper_layer != copper_layer) continue;
+    hollow = rule.hollow;
+  }
+  return hollow;
+}
+
+/// Rings of a figure, clipped; a convex ring stays simple when clipped, another keeps its mark.
+BodyShape shape_of(const geometry::Figure& figure, const study::Study& study, const Footprint& footprint, std::int64_t line) {
+  BodyShape shape;
+  shape.line = line;
+  for (Ring& ring : geometry::outline(figure, study.arcs, shape.simple))
+    if (Ring kept = clipped(std::move(ring), footprint.clip); kept.size() >= 3) shape.rings.push_back(std::move(kept));
+  return shape;
+}
+
+std::string_view short_net_name(const Board& board, std::int32_t net) {
+  return net < 0 ? std::string_view("none") : board.net_name(net);
+}
+
+/// Groups shapes by key in ascending order, so that bodies come out in one order whatever the file's.
+template <class Key>
+using Grouped = std::map<Key, std::vector<BodyShape>>;
+
+void append_body(ModelParts& parts, Body body, std::vector<BodyShape> shapes) {
+  const auto index = static_cast<std::int32_t>(parts.bodies.size());
+  parts.bodies.push_back(std::move(body));
+  for (BodyShape& shape : shapes) {
+    shape.body = index;
+    parts.shapes.push_back(std::move(shape));
+  }
+}
+
+/// Least width of a convex ring: over all edges, the farthest corner from the edge's line. 0 for others.
+Nm convex_width(const Ring& ring) {
+  constexpr std::size_t most_corners = 256;  // quadratic; anything rounder is no pad
+  if (ring.size() < 3 || ring.size() > most_corners) return 0;
+  double least = -1;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const geometry::Point a = ring[i], b = ring[(i + 1) % ring.size()];
+    const double dx = static_cast<double>(b.x - a.x), dy = static_cast<double>(b.y - a.y);
+    double farthest = 0;
+    for (geometry::Point p : ring)
+      farthest = std::max(farthest, std::abs(dx * static_cast<double>(p.y - a.y) - dy * static_cast<double>(p.x - a.x)));
+    const double width = farthest / std::sqrt(dx * dx + dy * dy);
+    if (least < 0 || width < least) least = width;
+  }
+  return static_cast<Nm>(std::llround(least));
+}
+
+/// Width that the copper of a figure has at its narrowest; 0 = not known.
+Nm width_of(const geometry::Figure& figure) {
+  if (!figure.filled) return figure.pen;
+  bool simple = true;
+  const std::vector<Ring> rings = geometry::outline({figure.path, 0, true}, {}, simple);
+  if (!simple || rings.empty()) return 0;
+  const Nm inner = convex_width(rings.front());
+  return inner == 0 ? 0 : inner + figure.pen;
+}
+
+}  // namespace
+
+void add_domain_and_board(const Footprint& footprint, const Stack& stack, ModelParts& parts) {
+  const auto last = static_cast<std::int32_t>(stack.slabs.size()) - 1;
+  const auto body = [&](std::string name, BodyKind kind) {
+    return Body{.name = std::move(name), .kind = kind, .first_slab = 0, .last_slab = last};
+  };
+  // Whether a ring is convex does not matter enough to find out: a few rings are normalised for nothing.
+  std::vector<BodyShape> domain, boards, cutouts;
+  for (const Ring& ring : footprint.domain) domain.push_back({.rings = {ring}, .simple = ring.size() == 4});
+  for (const std::vector<Ring>& rings : footprint.boards)
+    boards.push_back({.rings = rings, .simple = rings.size() == 1 && rings.front().size() == 4});
+  append_body(parts, body("domain", BodyKind::domain), std::move(domain));
+  append_body(parts, body("board", BodyKind::board), std::move(boards));
+  for (const Ring& ring : footprint.loose_cutouts) cutouts.push_back({.rings = {ring}, .simple = false});
+  if (cutouts.empty()) return;
+  Body hole = body("cut-outs", BodyKind::hole);
+  hole.material = stack.outside;
+  hole.priority = cutout_priority;
+  append_body(parts, std::move(hole), std::move(cutouts));
+}
+
+void add_copper(const Board& board, const study::Study& study, const std::vector<ResolvedRule>& rules,
+                const Footprint& footprint, const Stack& stack, ModelParts& parts, Diagnostics& diagnostics) {
+  Grouped<std::pair<std::int32_t, std::int32_t>> groups;  // (copper layer, net)
+  for (const board::Shape& shape : board.shapes()) {
+    const geometry::Box box = geometry::bounds(shape.figure);
+    if (!box.touches(footprint.box)) {
+      if (study.region == study::RegionKind::whole)
+        diagnostics.note("compose.copper_outside_board", "copper beside the board outline is left out",
+                         {.file = board.source(),
+                          .line = shape.line,
+                          .layer = board.copper_name(shape.copper_layer),
+                          .net = std::string(board.net_name(shape.net))});
+      continue;
+    }
+    BodyShape rings = shape_of(shape.figure, study, footprint, shape.line);
+    if (!rings.rings.empty()) groups[{shape.copper_layer, shape.net}].push_back(std::move(rings));
+  }
+  for (auto& [key, shapes] : groups) {
+    const auto [copper_layer, net] = key;
+    const std::int32_t slab = stack.copper_slab[static_cast<std::size_t>(copper_layer)];
+    const auto stackup_index = static_cast<std::size_t>(board.copper_layers()[static_cast<std::size_t>(copper_layer)]);
+    append_body(parts,
+                {.name = fmt::format("copper {} on {}", short_net_name(board, net), board.copper_name(copper_layer)),
+                 .kind = BodyKind::copper,
+                 .material = board.stackup()[stackup_index].material,
+                 .net = net,
+                 .first_slab = slab,
+                 .last_slab = slab,
+                 .priority = copper_priority,
+                 .hollow = is_hollow(study, rules, net, copper_layer)},
+                std::move(shapes));
+  }
+}
+
+void add_holes(const Board& board, const study::Study& study, const std::vector<ResolvedRule>& rules,
+               const Footprint& footprint, const Stack& stack, ModelParts& parts) {
+  Grouped<std::pair<std::int32_t, std::int32_t>> unplated;  // span
+  Grouped<std::array<std::int32_t, 3>> plated;              // span, net
+  for (const board::Drill& drill : board.drills()) {
+    if (!geometry::bounds(drill.figure).touches(footprint.box)) continue;
+    BodyShape rings = shape_of(drill.figure, study, footprint, drill.line);
+    if (rings.rings.empty()) continue;
+    if (drill.plated)
+      plated[{drill.first_copper, drill.last_copper, drill.net}].push_back(std::move(rings));
+    else
+      unplated[{drill.first_copper, drill.last_copper}].push_back(std::move(rings));
+  }
+  const auto last_copper = static_cast<std::int32_t>(board.copper_layers().size()) - 1;
+  const auto slab_of = [&](std::int32_t copper) { return stack.copper_slab[static_cast<std::size_t>(copper)]; };
+  for (auto& [span, shapes] : unplated) {
+    const auto [top, bottom] = span;
+    append_body(parts,
+                {.name = fmt::format("hole {} to {}", board.copper_name(top), board.copper_name(bottom)),
+                 .kind = BodyKind::hole,
+                 .material = stack.air,
+                 // A hole through all copper goes on through dielectric outside it.
+                 .first_slab = bottom == last_copper ? stack.first_board_slab : slab_of(bottom),
+                 .last_slab = top == 0 ? stack.last_board_slab : slab_of(top),
+                 .priority = hole_priority},
+                std::move(shapes));
+  }
+  for (auto& [key, shapes] : plated) {
+    const auto [top, bottom, net] = key;
+    const auto stackup_index = static_cast<std::size_t>(board.copper_layers()[static_cast<std::size_t>(top)]);
+    append_body(parts,
+                {.name = fmt::format("barrel {} {} to {}", short_net_name(board, net), board.copper_name(top),
+                                     board.copper_name(bottom)),
+                 .kind = BodyKind::barrel,
+                 .material = board.stackup()[stackup_index].material,
+                 .net = net,
+                 .first_slab = slab_of(bottom),
+                 .last_slab = slab_of(top),
+                 .priority = barrel_priority,
+                 .hollow = is_hollow(study, rules, net, -1)},
+                std::move(shapes));
+  }
+}
+
+void measure_narrowest(const Board& board, const Footprint& footprint, ModelParts& parts) {
+  std::vector<char> of_interest(board.nets().size(), 0);
+  for (std::int32_t net : parts.nets_of_interest) of_interest[static_cast<std::size_t>(net)] = 1;
+  const auto take = [&](const geometry::Figure& figure, std::int32_t net) {
+    const Nm width = width_of(figure);
+    if (width <= 0) return;
+    const auto least = [&](Nm& into) { into = into == 0 ? width : std::min(into, width); };
+    least(parts.narrowest_feature_nm);
+    if (net >= 0 && of_interest[static_cast<std::size_t>(net)]) least(parts.narrowest_of_interest_nm);
+  };
+  for (const board::Shape& shape : board.shapes()) {
+    // Fills and graphics have slivers of any width; they say nothing about what the designer drew on purpose.
+    if (shape.kind == board::ShapeKind::fill || shape.kind == board::ShapeKind::graphic) continue;
+    if (geometry::bounds(shape.figure).touches(footprint.box)) take(shape.figure, shape.net);
+  }
+  for (const board::Drill& drill : board.drills())
+    if (geometry::bounds(drill.figure).touches(footprint.box)) take(drill.figure, drill.net);
+}
+
+}  // namespace pcbmesh::compose

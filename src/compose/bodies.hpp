@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "pcbmesh/base/diagnostics.hpp"
+#include "pcbmesh/board/board.hpp"
+#include "pcbmesh/model/model.hpp"
+#include "pcbmesh/study/study.hpp"
+#include "src/compose/footprint.hpp"
+#include "src/compose/stack.hpp"
+
+namespace pcbmesh::compose {
+
+/// Priorities of bodies where they overlap; the highest wins.
+inline constexpr std::int32_t copper_priority = 2;
+inline constexpr std::int32_t hole_priority = 3;
+inline constexpr std::int32_t barrel_priority = 4;
+inline constexpr std::int32_t cutout_priority = 5;
+
+/// A study's conductor rule with its names resolved.
+struct ResolvedRule {
+  bool any_net = true;
+  std::int32_t net = board::no_net;
+  bool any_layer = true;
+  std::int32_t copper_layer = -1;
+  bool hollow = false;
+};
+
+/// Bodies 0 and 1, and loose cut-outs as holes of what lies outside the board.
+void add_domain_and_board(const Footprint& footprint, const Stack& stack, model::ModelParts& parts);
+
+/// One body per (copper layer, net) with copper in the domain, top layer first, nets ascending, copper without net first.
+void add_copper(const board::Board& board, const study::Study& study, const std::vector<ResolvedRule>& rules,
+                const Footprint& footprint, const Stack& stack, model::ModelParts& parts, Diagnostics& diagnostics);
+
+/// Unplated holes, one body per span, then barrels, one per (span, net).
+void add_holes(const board::Board& board, const study::Study& study, const std::vector<ResolvedRule>& rules,
+               const Footprint& footprint, const Stack& stack, model::ModelParts& parts);
+
+/// Smallest track width, pad width and hole diameter in the domain, and the same among parts.nets_of_interest.
+void measure_narrowest(const board::Board& board, const Footprint& footprint, model::ModelParts& parts);
+
+}  // namespace pcbmesh::compose

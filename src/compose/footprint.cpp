@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "src/compose/footprint.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+
+#include "pcbmesh/base/error.hpp"
+#include "pcbmesh/geometry/ring_contact.hpp"
+
+namespace pcbmesh::compose {
+namespace {
+
+using board::Board;
+using geometry::Box;
+using geometry::ContactKind;
+using geometry::Point;
+using geometry::Ring;
+using study::RegionKind;
+using study::Study;
+
+/// Rings are cut this far outside the domain: local cost, and the exact cut is the domain's own edge.
+constexpr Nm clip_slack_nm = 50 * nm_per_um;
+/// Board assumed around the copper where the file has no outline.
+constexpr Nm assumed_edge_nm = 1 * nm_per_mm;
+
+std::array<double, 2> mm(Point p) {
+  return {static_cast<double>(p.x) * 1e-6, static_cast<double>(p.y) * 1e-6};
+}
+
+std::string text_of(const Box& box) {
+  return fmt::format("({:.6g}, {:.6g}) to ({:.6g}, {:.6g}) mm", mm(box.min)[0], mm(box.min)[1], mm(box.max)[0], mm(box.max)[1]);
+}
+
+Ring rectangle(const Box& box) {
+  return {box.min, {box.max.x, box.min.y}, box.max, {box.min.x, box.max.y}};
+}
+
+bool has_area(const Box& box) {
+  return box.max.x > box.min.x && box.max.y > box.min.y;
+}
+
+Box intersection(const Box& a, const Box& b) {
+  return {{std::max(a.min.x, b.min.x), std::max(a.min.y, b.min.y)}, {std::min(a.max.x, b.max.x), std::min(a.max.y, b.max.y)}};
+}
+
+/// One board: outer ring and sorted-out cut-outs.
+struct BoardRings {
+  Ring outer;
+  std::vector<Ring> cutouts;
+};
+
+Ring ring_of(const Board& board, const geometry::Path& path, const Study& study, std::string_view what) {
+  Ring ring = geometry::flatten(path, study.arcs);
+  if (ring.size() < 3 || geometry::twice_area_nm2(ring) == 0)
+    throw Error(ErrorCode::outline_invalid, fmt::format("the {} encloses no area; mend it in the layout program", what),
+                {.file = board.source(), .at_mm = mm(path.points.front())});
+  geometry::make_counter_clockwise(ring);
+  return ring;
+}
+
+/// Cut-outs apart from everything stay with their board; one that meets another or the outline is loose, since winding
+/// numbers of rings that overlap would count twice. One inside another adds nothing.
+void sort_cutouts(const Board& board, const Study& study, const board::Outline& outline, BoardRings& into,
+                  std::vector<Ring>& loose, Diagnostics& diagnostics) {
+  std::vector<Ring> rings;
+  for (const geometry::Path& path : outline.cutouts) rings.push_back(ring_of(board, path, study, "cut-out"));
+  const std::size_t n = rings.size();
+  std::vector<Box> boxes;
+  for (const Ring& ring : rings) boxes.push_back(geometry::bounds(ring));
+  std::vector<char> meets(n, 0), drop(n, 0);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (geometry::contact(rings[i], into.outer).kind != ContactKind::none) {
+      meets[i] = 1;
+    } else if (!geometry::is_inside(rings[i], into.outer)) {
+      drop[i] = 1;
+      diagnostics.warn("compose.cutout_outside_outline", "a cut-out outside its board outline is ignored",
+                       {.file = board.source(), .at_mm = mm(rings[i].front())});
+    }
+    for (std::size_t j = 0; j < i; ++j) {
+      if (drop[i] || drop[j] || !boxes[i].touches(boxes[j])) continue;
+      if (geometry::contact(rings[i], rings[j]).kind != ContactKind::none)
+        meets[i] = meets[j] = 1;
+      else if (geometry::is_inside(rings[i], rings[j]))
+        drop[i] = 1;
+      else if (geometry::is_inside(rings[j], rings[i]))
+        drop[j] = 1;
+    }
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    if (drop[i]) continue;
+    if (meets[i]) {
+      diagnostics.note("compose.cutout_meets_outline", "a cut-out meets the outline or another cut-out; their union is cut",
+                       {.file = board.source(), .at_mm = mm(rings[i].front())});
+      loose.push_back(std::move(rings[i]));
+    } else {
+      into.cutouts.push_back(std::move(rings[i]));
+    }
+  }
+}
+
+void require_apart(const Board& board, const std::vector<BoardRings>& boards) {
+  for (std::size_t i = 0; i < boards.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const Ring &a = boards[i].outer, &b = boards[j].outer;
+      if (!geometry::bounds(a).touches(geometry::bounds(b))) continue;
+      const geometry::Contact met = geometry::contact(a, b);
+      const auto in_cutout = [](const Ring& inner, const BoardRings& frame) {
+        return std::any_of(frame.cutouts.begin(), frame.cutouts.end(),
+                           [&](const Ring& cutout) { return geometry::is_inside(inner, cutout); });
+      };
+      const bool nested = met.kind != ContactKind::crossing && ((geometry::is_inside(a, b) && !in_cutout(a, boards[j])) ||
+                                                                (geometry::is_inside(b, a) && !in_cutout(b, boards[i])));
+      if (met.kind != ContactKind::crossing && !nested) continue;
+      throw Error(
+          ErrorCode::outline_invalid,
+          fmt::format("board outlines {} and {} overlap; an outline inside another is a cut-out: mend the outline in the "
+                      "layout program",
+                      j + 1, i + 1),
+          {.file = board.source(), .at_mm = mm(nested ? a.front() : met.at)},
+          {static_cast<std::int64_t>(j), static_cast<std::int64_t>(i)});
+    }
+}
+
+/// Bounding box of the copper and holes of one net, or of all.
+Box copper_box(const Board& board, std::optional<std::int32_t> net) {
+  Box box;
+  for (const board::Shape& shape : board.shapes())
+    if (!net || shape.net == *net) box.add(geometry::bounds(shape.figure));
+  for (const board::Drill& drill : board.drills())
+    if (!net || drill.net == *net) box.add(geometry::bounds(drill.figure));
+  return box;
+}
+
+std::vector<BoardRings> board_rings(const Board& board, const Study& study, std::vector<Ring>& loose,
+                                    Diagnostics& diagnostics) {
+  std::vector<BoardRings> boards;
+  for (const board::Outline& outline : board.outlines()) {
+    BoardRings rings{ring_of(board, outline.outer, study, "board outline"), {}};
+    if (const auto at = geometry::self_crossing(rings.outer))
+      diagnostics.warn("compose.outline_crosses_itself", "the board outline crosses itself; all it winds round is board",
+                       {.file = board.source(), .at_mm = mm(*at)});
+    sort_cutouts(board, study, outline, rings, loose, diagnostics);
+    boards.push_back(std::move(rings));
+  }
+  require_apart(board, boards);
+  if (!boards.empty()) return boards;
+  const Box copper = copper_box(board, std::nullopt);
+  if (copper.is_empty())
+    throw Error(ErrorCode::outline_invalid, "the board has neither outline nor copper: there is nothing to mesh",
+                {.file = board.source()});
+  const Box assumed = copper.grown(assumed_edge_nm);
+  diagnostics.warn(
+      "compose.outline_absent",
+      fmt::format("the board has no outline; the box of its copper and 1 mm around is taken: {}", text_of(assumed)),
+      {.file = board.source()});
+  boards.push_back({rectangle(assumed), {}});
+  return boards;
+}
+
+Box nets_box(const Board& board, const Study& study, std::span<const std::int32_t> nets, Diagnostics& diagnostics) {
+  Box box;
+  std::string bare;
+  for (std::int32_t net : nets) {
+    const Box one = copper_box(board, net);
+    box.add(one);
+    if (!one.is_empty()) continue;
+    bare += fmt::format("{}'{}'", bare.empty() ? "" : ", ", board.net_name(net));
+    diagnostics.warn("compose.net_without_copper", "a net of the region has no copper on this board",
+                     {.file = board.source(), .net = std::string(board.net_name(net))});
+  }
+  if (box.is_empty())
+    throw Error(ErrorCode::region_empty,
+                fmt::format("no net of the region has copper ({}); name routed nets (`pcbmesh inspect` lists them)", bare),
+                {.file = board.source()});
+  return box.grown(study.margin);
+}
+
+/// The domain's rectangle for a region, cut down to the board and the air beside it.
+Box region_box(const Board& board, const Study& study, std::span<const std::int32_t> nets, const Box& around,
+               Diagnostics& diagnostics) {
+  const Box wanted = study.region == RegionKind::box ? *study.box : nets_box(board, study, nets, diagnostics);
+  const Box box = intersection(wanted, around);
+  if (!has_area(box))
+    throw Error(ErrorCode::region_empty,
+                fmt::format("the region {} does not meet the board, {}; y is up, as `pcbmesh inspect` prints it",
+                            text_of(wanted), text_of(around)),
+                {.file = board.source()});
+  return box;
+}
+
+}  // namespace
+
+Ring clipped(Ring ring, const Box& box) {
+  const Box own = geometry::bounds(ring);
+  if (box.contains(own.min) && box.contains(own.max)) return ring;
+  if (!box.touches(own)) return {};
+  return geometry::clip_to_box(ring, box);
+}
+
+Footprint build_footprint(const Board& board, const Study& study, std::span<const std::int32_t> nets,
+                          Diagnostics& diagnostics) {
+  Footprint footprint;
+  std::vector<Ring> loose;
+  const std::vector<BoardRings> boards = board_rings(board, study, loose, diagnostics);
+  Box outlines;
+  for (const BoardRings& rings : boards) outlines.add(geometry::bounds(rings.outer));
+  const Box around = outlines.grown(study.air_around);
+  const bool any_air = study.air_above > 0 || study.air_below > 0 || study.air_around > 0;
+
+  footprint.box = study.region == RegionKind::whole ? around : region_box(board, study, nets, around, diagnostics);
+  const Box limit{{-max_coordinate_nm, -max_coordinate_nm}, {max_coordinate_nm, max_coordinate_nm}};
+  if (!limit.contains(footprint.box.min) || !limit.contains(footprint.box.max))
+    throw Error(ErrorCode::study_invalid,
+                fmt::format("/air/around: the domain would reach beyond 1 m from the origin: {}", text_of(footprint.box)));
+  footprint.clip = footprint.box.grown(clip_slack_nm);
+  if (study.region == RegionKind::whole && !any_air)
+    for (const BoardRings& rings : boards) footprint.domain.push_back(rings.outer);
+  else
+    footprint.domain.push_back(rectangle(footprint.box));
+
+  bool board_in_domain = false;
+  for (const BoardRings& rings : boards) {
+    std::vector<Ring> kept;
+    Ring outer = clipped(rings.outer, footprint.clip);
+    if (outer.empty()) continue;
+    const Ring inside = clipped(outer, footprint.box);
+    board_in_domain = board_in_domain || (!inside.empty() && geometry::twice_area_nm2(inside) != 0);
+    kept.push_back(std::move(outer));
+    for (const Ring& cutout : rings.cutouts) {
+      Ring inner = clipped(cutout, footprint.clip);
+      if (inner.empty()) continue;
+      std::reverse(inner.begin(), inner.end());
+      kept.push_back(std::move(inner));
+    }
+    footprint.boards.push_back(std::move(kept));
+  }
+  if (!board_in_domain)
+    throw Error(ErrorCode::region_empty, fmt::format("the region {} lies beside the board", text_of(footprint.box)),
+                {.file = board.source()});
+  for (Ring& ring : loose)
+    if (Ring cut = clipped(std::move(ring), footprint.clip); !cut.empty()) footprint.loose_cutouts.push_back(std::move(cut));
+  return footprint;
+}
+
+}  // namespace pcbmesh::compose

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pcbmesh/pipeline/mesh_board.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <optional>
+#include <utility>
+
+#include "pcbmesh/base/error.hpp"
+#include "pcbmesh/compose/compose.hpp"
+#include "pcbmesh/extrude/extrude.hpp"
+#include "pcbmesh/layering/choose_layers.hpp"
+
+namespace pcbmesh::pipeline {
+namespace {
+
+constexpr double speed_of_light_m_per_s = 299'792'458.0;
+/// Longest edge where the study names neither a length nor a frequency: the paper's 2 mm.
+constexpr Nm default_longest_edge_nm = 2 * nm_per_mm;
+/// The paper's rule: at most a third of the wavelength.
+constexpr double edges_per_wavelength = 3.0;
+/// Area of an average triangle over the square of the longest edge where the bound, not the features, decides.
+/// Source: measured for CGAL's mesher, docs/evidence/paper.md.
+constexpr double area_over_edge_squared = 0.198;
+
+double cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// Runs steps one after another and books their CPU time.
+class Stopwatch {
+ public:
+  explicit Stopwatch(std::vector<StepTime>& times) : times_(times) {}
+  template <class Step>
+  auto operator()(const char* name, Step&& step) {
+    const double start = cpu_seconds();
+    auto result = step();
+    times_.push_back({name, cpu_seconds() - start});
+    return result;
+  }
+
+ private:
+  std::vector<StepTime>& times_;
+};
+
+Nm longest_edge_nm(const study::Study& study, const model::Model& model) {
+  std::optional<Nm> edge = study.longest_edge;
+  if (study.frequency_hz) {
+    double slowest = 1;
+    for (const model::Slab& slab : model.slabs()) {
+      const board::Material& m = model.materials()[static_cast<std::size_t>(slab.material)];
+      slowest = std::max(slowest, m.eps_r * m.mu_r);
+    }
+    const double wavelength_m = speed_of_light_m_per_s / *study.frequency_hz / std::sqrt(slowest);
+    const auto bound = static_cast<Nm>(std::max(1.0, std::floor(wavelength_m / edges_per_wavelength / metres_per_nm)));
+    edge = std::min(edge.value_or(bound), bound);
+  }
+  return edge.value_or(default_longest_edge_nm);
+}
+
+double area_m2(const mesh::PlanarMesh& mesh) {
+  double sum = 0;
+  for (std::int32_t t = 0; t < mesh.num_triangles(); ++t) sum += mesh.area_m2(t);
+  return sum;
+}
+
+void require_budget(double prisms, const study::Study& study, std::string_view what) {
+  if (prisms <= static_cast<double>(study.max_prisms)) return;
+  throw Error(ErrorCode::prism_limit, fmt::format("{} would give about {:.3g} prisms, above the budget of {:.3g}; mesh a "
+                                                  "region (--nets, --region), take a longer edge or "
+                                                  "another height policy, or raise --max-prisms",
+                                                  what, prisms, static_cast<double>(study.max_prisms)));
+}
+
+std::int64_t num_prisms(const mesh::PlanarMesh& planar, const mesh::LayerPlan& plan) {
+  return static_cast<std::int64_t>(planar.num_triangles()) * plan.num_sublayers();
+}
+
+}  // namespace
+
+MeshBoardResult mesh_board(const board::Board& board, const study::Study& study, const Progress& progress) {
+  study::check(study);
+  Diagnostics diagnostics;
+  std::vector<StepTime> times;
+  Stopwatch timed(times);
+  study::Study resolved = study;
+
+  progress.at("compose", 0);
+  const model::Model model = timed("compose", [&] { return compose::compose(board, study, diagnostics); });
+  resolved.longest_edge = longest_edge_nm(study, model);
+
+  overlay::OverlayOptions overlay_options;
+  overlay_options.tolerance_nm = study.tolerance;
+  overlay::OverlayResult graph =
+      timed("overlay", [&] { return overlay::overlay(model, overlay_options, diagnostics, progress); });
+  resolved.tolerance = graph.statistics.tolerance_nm;
+
+  triangulate::TriangulateOptions options;
+  options.longest_edge_nm = static_cast<double>(*resolved.longest_edge);
+  options.min_angle_deg = study.min_angle_deg;
+  if (study.edge_at_copper) options.grading = triangulate::Grading{static_cast<double>(*study.edge_at_copper), study.growth};
+  triangulate::TriangulateResult planar =
+      timed("triangulate", [&] { return triangulate::triangulate(graph.graph, model, options, diagnostics, progress); });
+
+  // The paper's feedback: the common height of the first mesh becomes the longest edge of the second.
+  layering::HeightStatistics heights = layering::height_statistics(planar.mesh);
+  const std::optional<double> height_m = layering::common_height_m(study.policy, heights, model.slabs());
+  std::optional<double> feedback_m;
+  if (height_m) feedback_m = layering::feedback_edge_m(study.policy, *height_m, options.longest_edge_nm * metres_per_nm);
+  if (feedback_m) {
+    const double forecast = area_m2(planar.mesh) / (area_over_edge_squared * *feedback_m * *feedback_m);
+    require_budget(forecast * static_cast<double>(model.slabs().size()), study,
+                   fmt::format("height policy '{}' with edges of {:.4g} um", study::name_of(study.policy), *feedback_m * 1e6));
+    options.longest_edge_nm = *feedback_m / metres_per_nm;
+    planar = timed("triangulate again",
+                   [&] { return triangulate::triangulate(graph.graph, model, options, diagnostics, progress); });
+    heights = layering::height_statistics(planar.mesh);
+  }
+
+  progress.at("choose layers", 0);
+  const mesh::LayerPlan plan = layering::choose_layers(model.slabs(), study.sublayers, height_m, heights);
+  require_budget(static_cast<double>(num_prisms(planar.mesh, plan)), study,
+                 fmt::format("{} triangles in {} sub-layers", planar.mesh.num_triangles(), plan.num_sublayers()));
+
+  progress.at("extrude", 0);
+  mesh::PrismMesh prisms =
+      timed("extrude", [&] { return extrude::extrude(planar.mesh, plan, model, graph.net_pieces, graph.touching_nets); });
+  progress.at("quality", 0);
+  const layering::QualityStatistics quality = timed("quality", [&] { return layering::quality_statistics(prisms); });
+
+  return {std::move(prisms),    std::move(resolved),    graph.statistics, std::move(graph.ledger), planar.statistics, heights,
+          height_m.value_or(0), feedback_m.has_value(), quality,          std::move(diagnostics),  std::move(times)};
+}
+
+}  // namespace pcbmesh::pipeline

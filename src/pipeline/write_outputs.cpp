@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pcbmesh/pipeline/write_outputs.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "formats/sink/file_sink.hpp"
+#include "formats/tags_json/tags_json.hpp"
+#include "pcbmesh/base/error.hpp"
+
+namespace pcbmesh::pipeline {
+namespace {
+
+validation::Report judge(const MeshBoardResult& result, const OutputOptions& options, const std::filesystem::path& tags,
+                         const Progress& progress) {
+  validation::Expectation expectation = validation::read_expectation(tags.string());
+  for (const std::filesystem::path& file : options.meshes) {
+    if (formats::find_mesh_format(file, options.format)->read == nullptr) continue;
+    progress.at("check", 0);
+    return validation::check(formats::read_mesh(file, options.format, progress), &expectation, {options.num_threads});
+  }
+  progress.at("check", 0);
+  expectation.unit_m = 1.0;
+  return validation::check(expand(result.mesh), &expectation, {options.num_threads});
+}
+
+}  // namespace
+
+std::filesystem::path file_beside(const std::filesystem::path& mesh, std::string_view ending) {
+  std::filesystem::path file = mesh;
+  file.replace_extension();
+  file += ending;
+  return file;
+}
+
+void require_writable(const OutputOptions& options, const std::filesystem::path& input) {
+  std::vector<std::filesystem::path> seen;
+  for (const std::filesystem::path& file : options.meshes) {
+    const Spot spot{.file = file.string()};
+    const std::filesystem::path absolute = std::filesystem::absolute(file);
+    if (!std::filesystem::is_directory(absolute.parent_path()))
+      throw Error(ErrorCode::write_failed, "the folder does not exist; make it first",
+                  {.file = absolute.parent_path().string()});
+    if (std::filesystem::is_directory(file))
+      throw Error(ErrorCode::write_failed, "this is a folder; name a file in it, e.g. board.msh", spot);
+    const formats::MeshFormat* format = formats::find_mesh_format(file, options.format);
+    if (format == nullptr || format->write == nullptr)
+      throw Error(ErrorCode::usage,
+                  "no mesh format that pcbmesh writes has this ending; 'pcbmesh formats' lists them, --to NAME picks one",
+                  spot);
+    std::error_code ignored;
+    if (std::filesystem::equivalent(file, input, ignored))
+      throw Error(ErrorCode::usage, "the output would overwrite the board", spot);
+    if (std::find(seen.begin(), seen.end(), absolute) != seen.end())
+      throw Error(ErrorCode::usage, "this output is named twice", spot);
+    seen.push_back(absolute);
+  }
+}
+
+void write_text_file(const std::filesystem::path& file, std::string_view text) {
+  formats::FileSink sink(file);
+  sink.put(text);
+  if (!text.ends_with('\n')) sink.put("\n");
+  sink.commit();
+}
+
+OutputResult write_outputs(const MeshBoardResult& result, const OutputOptions& options, const Progress& progress) {
+  OutputResult out;
+  const std::filesystem::path tags = file_beside(options.meshes.front(), ".tags.json"),
+                              study = file_beside(options.meshes.front(), ".study.json");
+  // The contract first: whoever sees the mesh finds its meaning beside it.
+  formats::tags_json::write_tags(result.mesh, tags, options.write.unit);
+  write_text_file(study, study::to_json(result.resolved));
+  for (const std::filesystem::path& file : options.meshes) {
+    formats::write_mesh(result.mesh, file, options.write, options.format, progress);
+    out.files.push_back(file.string());
+  }
+  out.files.push_back(tags.string());
+  out.files.push_back(study.string());
+  if (options.check) out.report = judge(result, options, tags, progress);
+  return out;
+}
+
+mesh::MeshData expand(const mesh::PrismMesh& mesh) {
+  mesh::MeshData out;
+  out.source = "mesh in memory";
+  out.num_other_elements = {0, 0};
+  out.nodes.resize(static_cast<std::size_t>(mesh.num_nodes()));
+  mesh.fill_nodes(0, out.nodes);
+
+  const auto num_prisms = static_cast<std::size_t>(mesh.num_prisms());
+  mesh::CellBlock wedges;
+  wedges.corners.reserve(num_prisms * 6);
+  wedges.tags.reserve(num_prisms);
+  std::vector<std::array<std::int64_t, 6>> corners(1 << 16);
+  std::vector<std::int32_t> tags(corners.size());
+  for (std::size_t first = 0; first < num_prisms; first += corners.size()) {
+    const std::size_t count = std::min(corners.size(), num_prisms - first);
+    mesh.fill_prisms(static_cast<std::int64_t>(first), std::span(corners).first(count), std::span(tags).first(count));
+    for (std::size_t i = 0; i < count; ++i) {
+      wedges.corners.insert(wedges.corners.end(), corners[i].begin(), corners[i].end());
+      wedges.tags.push_back(mesh.volume_tags()[static_cast<std::size_t>(tags[i])].id);
+    }
+  }
+  out.cells.push_back(std::move(wedges));
+
+  mesh::FaceBlock triangles{mesh::FaceKind::triangle, {}, {}}, quads{mesh::FaceKind::quadrangle, {}, {}};
+  for (const mesh::Cap& cap : mesh.caps()) {
+    std::array<std::int32_t, 3> t = mesh.planar().triangles()[static_cast<std::size_t>(cap.triangle)];
+    if (!cap.up) std::swap(t[1], t[2]);
+    for (std::int32_t v : t) triangles.corners.push_back(mesh.node_id(cap.level, v));
+    triangles.tags.push_back(mesh.face_tags()[static_cast<std::size_t>(cap.tag)].id);
+  }
+  for (const mesh::Wall& wall : mesh.walls())
+    for (std::int32_t k = mesh.plan().first_sublayer(wall.slab); k < mesh.plan().first_sublayer(wall.slab + 1); ++k) {
+      for (const auto& [level, v] : {std::pair{k, wall.a}, {k, wall.b}, {k + 1, wall.b}, {k + 1, wall.a}})
+        quads.corners.push_back(mesh.node_id(level, v));
+      quads.tags.push_back(mesh.face_tags()[static_cast<std::size_t>(wall.tag)].id);
+    }
+  out.faces = {std::move(triangles), std::move(quads)};
+  for (const mesh::VolumeTag& tag : mesh.volume_tags()) out.names.push_back({3, tag.id, tag.name});
+  for (const mesh::FaceTag& tag : mesh.face_tags()) out.names.push_back({2, tag.id, tag.name});
+  return out;
+}
+
+}  // namespace pcbmesh::pipeline

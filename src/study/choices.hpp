@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "pcbmesh/base/error.hpp"
+#include "pcbmesh/base/near_miss.hpp"
+#include "pcbmesh/study/study.hpp"
+
+namespace pcbmesh::study {
+
+/// One value of an enumeration and its name in files and on the command line.
+template <typename Value>
+struct Choice {
+  Value value;
+  std::string_view name;
+};
+
+inline constexpr std::array<Choice<RegionKind>, 3> region_names{
+    {{RegionKind::whole, "whole"}, {RegionKind::nets, "nets"}, {RegionKind::box, "box"}}};
+inline constexpr std::array<Choice<ConductorMode>, 2> conductor_names{
+    {{ConductorMode::solid, "solid"}, {ConductorMode::hollow, "hollow"}}};
+/// In the order of the paper's case numbers: none, then cases 1 to 5.
+inline constexpr std::array<Choice<HeightPolicy>, 6> policy_names{{{HeightPolicy::none, "none"},
+                                                                   {HeightPolicy::basic, "basic"},
+                                                                   {HeightPolicy::average, "average"},
+                                                                   {HeightPolicy::maximum, "maximum"},
+                                                                   {HeightPolicy::minimum, "minimum"},
+                                                                   {HeightPolicy::thinnest_layer, "thinnest_layer"}}};
+inline constexpr std::array<Choice<SublayerRule>, 5> sublayer_names{{{SublayerRule::floor, "floor"},
+                                                                     {SublayerRule::round, "round"},
+                                                                     {SublayerRule::ceil, "ceil"},
+                                                                     {SublayerRule::none, "none"},
+                                                                     {SublayerRule::optimal, "optimal"}}};
+inline constexpr std::array<Choice<geometry::ArcMode>, 4> arc_names{{{geometry::ArcMode::inscribed, "inscribed"},
+                                                                     {geometry::ArcMode::circumscribed, "circumscribed"},
+                                                                     {geometry::ArcMode::equal_area, "equal_area"},
+                                                                     {geometry::ArcMode::octagon, "octagon"}}};
+
+template <typename Value, std::size_t N>
+[[nodiscard]] std::string_view name_in(const std::array<Choice<Value>, N>& choices, Value value) {
+  for (const Choice<Value>& choice : choices)
+    if (choice.value == value) return choice.name;
+  return "?";
+}
+
+/// @throws Error usage (101) listing the choices.
+template <typename Value, std::size_t N>
+[[nodiscard]] Value value_in(const std::array<Choice<Value>, N>& choices, std::string_view text, std::string_view what) {
+  std::vector<std::string> names;
+  for (const Choice<Value>& choice : choices) {
+    if (choice.name == text) return choice.value;
+    names.emplace_back(choice.name);
+  }
+  throw Error(ErrorCode::usage, fmt::format("unknown {} '{}'; choices are {}{}", what, text.substr(0, 60),
+                                            fmt::join(names, ", "), did_you_mean(text, names)));
+}
+
+}  // namespace pcbmesh::study

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pcbmesh/study/study.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pcbmesh/base/error.hpp"
+#include "src/study/choices.hpp"
+
+namespace pcbmesh::study {
+namespace {
+
+[[noreturn]] void refuse(std::string_view field, std::string_view text) {
+  throw Error(ErrorCode::study_invalid, fmt::format("{}: {}", field, text));
+}
+
+void require_length(std::string_view field, Nm value, Nm least, Nm most) {
+  if (value < least || value > most)
+    refuse(field, fmt::format("{} is out of range; expected {} to {}", format_length(value), format_length(least),
+                              format_length(most)));
+}
+
+void check_region(const Study& study) {
+  if (study.region == RegionKind::nets && study.nets.empty())
+    refuse("/region/nets", "a region by nets needs at least one net name");
+  for (const std::string& net : study.nets)
+    if (net.empty()) refuse("/region/nets", "a net name is empty");
+  for (std::size_t i = 0; i < study.nets.size(); ++i)
+    if (std::find(study.nets.begin(), study.nets.begin() + static_cast<std::ptrdiff_t>(i), study.nets[i]) !=
+        study.nets.begin() + static_cast<std::ptrdiff_t>(i))
+      refuse("/region/nets", fmt::format("net '{}' is named twice", study.nets[i]));
+  require_length("/region/margin", study.margin, 0, max_coordinate_nm);
+  if (study.region == RegionKind::box && !study.box) refuse("/region/box", "a region by box needs the box");
+  if (!study.box) return;
+  const geometry::Box& box = *study.box;
+  if (box.max.x <= box.min.x || box.max.y <= box.min.y)
+    refuse("/region/box", "the box is empty: max must lie above and to the right of min");
+  for (Nm value : {box.min.x, box.min.y, box.max.x, box.max.y})
+    require_length("/region/box", value, -max_coordinate_nm, max_coordinate_nm);
+}
+
+void check_mesh(const Study& study) {
+  constexpr double highest_hz = 1e13;
+  if (study.frequency_hz && !(*study.frequency_hz > 0 && *study.frequency_hz <= highest_hz))
+    refuse("/mesh/frequency", fmt::format("{} Hz is out of range; expected above 0 and up to 10 THz", *study.frequency_hz));
+  if (study.longest_edge) require_length("/mesh/longest_edge", *study.longest_edge, 1, max_coordinate_nm);
+  if (study.edge_at_copper) require_length("/mesh/edge_at_copper", *study.edge_at_copper, 1, max_coordinate_nm);
+  if (study.edge_at_copper && study.longest_edge && *study.edge_at_copper > *study.longest_edge)
+    refuse("/mesh/edge_at_copper", fmt::format("{} is longer than the longest edge, {}", format_length(*study.edge_at_copper),
+                                               format_length(*study.longest_edge)));
+  if (!(study.min_angle_deg > 0 && study.min_angle_deg <= 28.6))
+    refuse("/mesh/min_angle_deg",
+           fmt::format("{} is out of range; expected above 0 and up to 28.6 degrees (refinement is sure to end up to 20.7)",
+                       study.min_angle_deg));
+  if (!(study.growth > 0 && study.growth <= 10))
+    refuse("/mesh/growth", fmt::format("{} is out of range; expected above 0 and up to 10", study.growth));
+  if (study.tolerance) require_length("/mesh/tolerance", *study.tolerance, 1, nm_per_mm);
+}
+
+}  // namespace
+
+std::string_view name_of(RegionKind value) {
+  return name_in(region_names, value);
+}
+std::string_view name_of(ConductorMode value) {
+  return name_in(conductor_names, value);
+}
+std::string_view name_of(HeightPolicy value) {
+  return name_in(policy_names, value);
+}
+std::string_view name_of(SublayerRule value) {
+  return name_in(sublayer_names, value);
+}
+
+HeightPolicy parse_height_policy(std::string_view text) {
+  constexpr std::array<std::string_view, 5> paper_cases{"1", "2", "3", "4", "5"};
+  for (std::size_t i = 0; i < paper_cases.size(); ++i)
+    if (text == paper_cases[i]) return policy_names[i + 1].value;
+  return value_in(policy_names, text, "height policy");
+}
+SublayerRule parse_sublayer_rule(std::string_view text) {
+  return value_in(sublayer_names, text, "sub-layer rule");
+}
+ConductorMode parse_conductor_mode(std::string_view text) {
+  return value_in(conductor_names, text, "conductor mode");
+}
+
+bool Study::operator==(const Study& other) const {
+  const auto same_box = [](const geometry::Box& a, const geometry::Box& b) { return a.min == b.min && a.max == b.max; };
+  return region == other.region && nets == other.nets && margin == other.margin && box.has_value() == other.box.has_value() &&
+         (!box || same_box(*box, *other.box)) && conductors == other.conductors && conductor_rules == other.conductor_rules &&
+         air_above == other.air_above && air_below == other.air_below && air_around == other.air_around &&
+         frequency_hz == other.frequency_hz && longest_edge == other.longest_edge && min_angle_deg == other.min_angle_deg &&
+         edge_at_copper == other.edge_at_copper && growth == other.growth && policy == other.policy &&
+         sublayers == other.sublayers && tolerance == other.tolerance && arcs.sagitta_nm == other.arcs.sagitta_nm &&
+         arcs.mode == other.arcs.mode && unit == other.unit && max_prisms == other.max_prisms;
+}
+
+void check(const Study& study) {
+  check_region(study);
+  require_length("/air/above", study.air_above, 0, max_coordinate_nm);
+  require_length("/air/below", study.air_below, 0, max_coordinate_nm);
+  require_length("/air/around", study.air_around, 0, max_coordinate_nm);
+  check_mesh(study);
+  require_length("/arcs/sagitta", study.arcs.sagitta_nm, 1, nm_per_mm);
+  if (study.max_prisms < 1)
+    refuse("/limits/max_prisms", fmt::format("{} is out of range; expected at least 1", study.max_prisms));
+}
+
+}  // namespace pcbmesh::study

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "formats/syntax/input_file.hpp"
+#include "formats/syntax/json_tree.hpp"
+#include "pcbmesh/base/error.hpp"
+#include "src/study/choices.hpp"
+
+namespace pcbmesh::study {
+namespace {
+
+using formats::syntax::JsonDocument;
+using formats::syntax::JsonKind;
+using formats::syntax::JsonValue;
+using Json = nlohmann::ordered_json;
+
+constexpr double study_unit_mm = 1.0;  // a bare number is a length in millimetres, as on the command line
+
+// ---- JSON -> Study -----------------------------------------------------------------------------------------------
+
+template <typename Value, std::size_t N>
+void read_choice(const JsonValue& object, std::string_view name, const std::array<Choice<Value>, N>& choices, Value& into) {
+  const auto field = object.find(name);
+  if (!field) return;
+  try {
+    into = value_in(choices, field->as_string(), name);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::usage) throw;
+    field->fail(error.text());
+  }
+}
+
+void read_length(const JsonValue& object, std::string_view name, Nm& into) {
+  if (const auto field = object.find(name)) into = field->as_length(study_unit_mm);
+}
+
+void read_optional_length(const JsonValue& object, std::string_view name, std::optional<Nm>& into) {
+  const auto field = object.find_set(name);
+  if (field) into = field->as_length(study_unit_mm);
+}
+
+geometry::Point read_corner(const JsonValue& value) {
+  if (value.as_array().size() != 2) value.fail("expected two lengths, [x, y]");
+  auto it = value.begin();
+  const Nm x = (*it).as_length(study_unit_mm);
+  const Nm y = (*++it).as_length(study_unit_mm);
+  return {x, y};
+}
+
+void read_region(const JsonValue& object, Study& study) {
+  object.allow_only({"kind", "nets", "margin", "box"});
+  if (const auto nets = object.find("nets"))
+    for (JsonValue net : nets->as_array()) study.nets.emplace_back(net.as_string());
+  if (const auto box = object.find_set("box")) {
+    box->allow_only({"min", "max"});
+    study.box = geometry::Box{read_corner(box->at("min")), read_corner(box->at("max"))};
+  }
+  read_length(object, "margin", study.margin);
+  // Without a kind, what is given tells: an engineer who names a box means it.
+  if (!object.find("kind")) {
+    if (study.box && !study.nets.empty()) object.fail("both nets and box are given: add \"kind\": \"nets\" or \"box\"");
+    if (study.box) study.region = RegionKind::box;
+    if (!study.nets.empty()) study.region = RegionKind::nets;
+  }
+  read_choice(object, "kind", region_names, study.region);
+}
+
+void read_conductors(const JsonValue& object, Study& study) {
+  object.allow_only({"mode", "rules"});
+  read_choice(object, "mode", conductor_names, study.conductors);
+  const auto rules = object.find("rules");
+  if (!rules) return;
+  for (JsonValue entry : rules->as_array()) {
+    entry.allow_only({"net", "layer", "mode"});
+    ConductorRule rule;
+    if (const auto net = entry.find("net")) rule.net = net->as_string();
+    if (const auto layer = entry.find("layer")) rule.layer = layer->as_string();
+    (void)entry.at("mode");
+    read_choice(entry, "mode", conductor_names, rule.mode);
+    study.conductor_rules.push_back(std::move(rule));
+  }
+}
+
+void read_frequency(const JsonValue& field, Study& study) {
+  try {
+    study.frequency_hz = field.is(JsonKind::string) ? parse_frequency_hz(field.as_string()) : field.as_number();
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::usage) throw;
+    field.fail(error.text());
+  }
+}
+
+void read_mesh(const JsonValue& object, Study& study) {
+  object.allow_only(
+      {"frequency", "longest_edge", "min_angle_deg", "edge_at_copper", "growth", "height_policy", "sublayers", "tolerance"});
+  if (const auto field = object.find_set("frequency")) read_frequency(*field, study);
+  read_optional_length(object, "longest_edge", study.longest_edge);
+  read_optional_length(object, "edge_at_copper", study.edge_at_copper);
+  read_optional_length(object, "tolerance", study.tolerance);
+  if (const auto field = object.find("min_angle_deg")) study.min_angle_deg = field->as_number();
+  if (const auto field = object.find("growth")) study.growth = field->as_number();
+  read_choice(object, "sublayers", sublayer_names, study.sublayers);
+  const auto policy = object.find("height_policy");
+  if (!policy) return;
+  try {
+    study.policy = policy->is(JsonKind::number) ? parse_height_policy(std::to_string(policy->as_integer()))
+                                                : parse_height_policy(policy->as_string());
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::usage) throw;
+    policy->fail(error.text());
+  }
+}
+
+void read_output(const JsonValue& object, Study& study) {
+  object.allow_only({"unit"});
+  const auto unit = object.find("unit");
+  if (!unit) return;
+  try {
+    study.unit = parse_length_unit(unit->as_string());
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::usage) throw;
+    unit->fail(error.text());
+  }
+}
+
+void read_version(const JsonValue& root) {
+  const JsonValue version = root.at("schema_version");
+  if (version.as_integer() != Study::schema_version)
+    version.fail(fmt::format("study schema version {} is not known; this program reads version {}", version.as_integer(),
+                             Study::schema_version));
+}
+
+/// check() names fields by JSON pointer; here the pointer becomes a line.
+Spot spot_of(const JsonValue& root, std::string_view text) {
+  JsonValue at = root;
+  std::string_view rest = text.substr(0, text.find(':'));
+  while (!rest.empty() && rest.front() == '/') {
+    rest.remove_prefix(1);
+    const std::string_view step = rest.substr(0, rest.find('/'));
+    const auto next = at.is(JsonKind::object) ? at.find(step) : std::nullopt;
+    if (!next) break;
+    at = *next;
+    rest.remove_prefix(step.size());
+  }
+  return at.spot();
+}
+
+// ---- Study -> JSON -----------------------------------------------------------------------------------------------
+
+/// Exact text of a length: whole millimetres, micrometres or nanometres.
+std::string exact_length(Nm value) {
+  if (value % nm_per_mm == 0) return fmt::format("{}mm", value / nm_per_mm);
+  if (value % nm_per_um == 0) return fmt::format("{}um", value / nm_per_um);
+  return fmt::format("{}nm", value);
+}
+
+Json optional_length(const std::optional<Nm>& value) {
+  return value ? Json(exact_length(*value)) : Json(nullptr);
+}
+
+Json corner(geometry::Point p) {
+  return Json::array({exact_length(p.x), exact_length(p.y)});
+}
+
+}  // namespace
+
+Study parse_study(std::string_view json, std::string_view file_name) {
+  const JsonDocument document = JsonDocument::parse(json, file_name, ErrorCode::study_invalid);
+  const JsonValue root = document.root();
+  root.allow_only({"$schema", "schema_version", "note", "region", "conductors", "air", "mesh", "arcs", "output", "limits"});
+  read_version(root);
+  if (const auto field = root.find("$schema")) (void)field->as_string();
+  if (const auto field = root.find("note")) (void)field->as_string();
+  Study study;
+  if (const auto object = root.find("region")) read_region(*object, study);
+  if (const auto object = root.find("conductors")) read_conductors(*object, study);
+  if (const auto object = root.find("air")) {
+    object->allow_only({"above", "below", "around"});
+    read_length(*object, "above", study.air_above);
+    read_length(*object, "below", study.air_below);
+    read_length(*object, "around", study.air_around);
+  }
+  if (const auto object = root.find("mesh")) read_mesh(*object, study);
+  if (const auto object = root.find("arcs")) {
+    object->allow_only({"sagitta", "mode"});
+    read_length(*object, "sagitta", study.arcs.sagitta_nm);
+    read_choice(*object, "mode", arc_names, study.arcs.mode);
+  }
+  if (const auto object = root.find("output")) read_output(*object, study);
+  if (const auto object = root.find("limits")) {
+    object->allow_only({"max_prisms"});
+    if (const auto field = object->find("max_prisms")) study.max_prisms = field->as_integer();
+  }
+  try {
+    check(study);
+  } catch (const Error& error) {
+    throw Error(error.code(), error.text(), spot_of(root, error.text()));
+  }
+  return study;
+}
+
+Study read_study(const std::filesystem::path& file) {
+  return parse_study(formats::syntax::read_whole_file(file), file.string());
+}
+
+std::string to_json(const Study& study) {
+  Json root;
+  root["schema_version"] = Study::schema_version;
+  Json& region = root["region"];
+  region["kind"] = name_of(study.region);
+  region["nets"] = study.nets;
+  region["margin"] = exact_length(study.margin);
+  region["box"] = nullptr;
+  if (study.box) region["box"] = Json{{"min", corner(study.box->min)}, {"max", corner(study.box->max)}};
+  Json& conductors = root["conductors"];
+  conductors["mode"] = name_of(study.conductors);
+  conductors["rules"] = Json::array();
+  for (const ConductorRule& rule : study.conductor_rules)
+    conductors["rules"].push_back(Json{{"net", rule.net}, {"layer", rule.layer}, {"mode", name_of(rule.mode)}});
+  root["air"] = Json{{"above", exact_length(study.air_above)},
+                     {"below", exact_length(study.air_below)},
+                     {"around", exact_length(study.air_around)}};
+  Json& mesh = root["mesh"];
+  mesh["frequency"] = study.frequency_hz ? Json(*study.frequency_hz) : Json(nullptr);
+  mesh["longest_edge"] = optional_length(study.longest_edge);
+  mesh["min_angle_deg"] = study.min_angle_deg;
+  mesh["edge_at_copper"] = optional_length(study.edge_at_copper);
+  mesh["growth"] = study.growth;
+  mesh["height_policy"] = name_of(study.policy);
+  mesh["sublayers"] = name_of(study.sublayers);
+  mesh["tolerance"] = optional_length(study.tolerance);
+  root["arcs"] = Json{{"sagitta", exact_length(study.arcs.sagitta_nm)}, {"mode", name_in(arc_names, study.arcs.mode)}};
+  root["output"] = Json{{"unit", name_of(study.unit)}};
+  root["limits"] = Json{{"max_prisms", study.max_prisms}};
+  // A net name may hold any bytes; those that are no UTF-8 are replaced rather than refused.
+  return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace pcbmesh::study

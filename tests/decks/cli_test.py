@@ -1,0 +1,137 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The program as its user meets it: help, exit codes, messages, files left behind."""
+import pathlib
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+
+from program import PROGRAM, ROOT, run, run_json
+
+SERPENTINE = ROOT / "examples/serpentine.json"
+
+
+class Cli(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.out = pathlib.Path(self.folder.name)
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def leftovers(self):
+        return sorted(p.name for p in self.out.iterdir())
+
+    def test_help_has_examples_and_every_command(self):
+        text = run("--help").stdout
+        for word in ("Examples", "mesh", "inspect", "check", "formats", "Exit codes"):
+            self.assertIn(word, text)
+        for command in ("mesh", "inspect", "check"):
+            self.assertIn("Examples", run(command, "--help").stdout)
+        self.assertRegex(run("--version").stdout, r"^pcbmesh \d+\.\d+\.\d+\n$")
+
+    def test_mesh_writes_the_mesh_its_contract_study_and_report(self):
+        done = run("mesh", SERPENTINE, "--air", "0", "-o", self.out / "a.msh")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(self.leftovers(), ["a.msh", "a.report.json", "a.study.json", "a.tags.json"])
+        self.assertIn("passed", done.stdout)
+        again = run("mesh", SERPENTINE, "--study", self.out / "a.study.json", "-o", self.out / "b.msh")
+        self.assertEqual(again.returncode, 0, again.stderr)
+        self.assertEqual((self.out / "a.msh").read_bytes(), (self.out / "b.msh").read_bytes(), "the resolved study gives the same bytes")
+
+    def test_every_policy_meshes_the_papers_examples(self):
+        for example in ("serpentine", "via"):
+            for policy in ("basic", "average", "maximum", "minimum", "thinnest_layer", "none"):
+                if (example, policy) == ("via", "thinnest_layer") or (example, policy) == ("via", "minimum"):
+                    continue  # a million prisms each: in the slow set
+                report = run_json("mesh", ROOT / f"examples/{example}.json", "--air", "0", "--policy", policy, "--sublayers", "floor", "-o", self.out / "x.msh")
+                self.assertEqual(sum(f["count"] for f in report["check"]["findings"] if f["severity"] == "error"), 0, (example, policy))
+                self.assertEqual(report["counts"]["prisms"], report["counts"]["triangles"] * report["counts"]["sublayers"])
+
+    def test_usage_errors_are_exit_2_and_say_what_to_do(self):
+        for arguments, words in (
+            (["mesh", SERPENTINE], ["-o"]),
+            (["mesh", SERPENTINE, "-o", self.out / "x.step"], ["formats"]),
+            (["mesh", SERPENTINE, "--nets", "A", "--region", "0,0,1,1", "-o", self.out / "x.msh"], ["--nets", "--region"]),
+            (["mesh", SERPENTINE, "--margin", "2furlongs", "-o", self.out / "x.msh"], ["furlongs"]),
+            (["mesh", SERPENTINE, "--policy", "best", "-o", self.out / "x.msh"], ["average"]),
+            (["mesh", SERPENTINE, "--min-angle", "40", "-o", self.out / "x.msh"], ["angle"]),
+            (["mesh", SERPENTINE, "--tolerance", "-1um", "-o", self.out / "x.msh"], ["tolerance"]),
+            ([], ["subcommand"]),
+        ):
+            done = run(*arguments)
+            self.assertEqual(done.returncode, 2, (arguments, done.stderr))
+            for word in words:
+                self.assertIn(word, done.stderr + done.stdout)
+        self.assertEqual(self.leftovers(), [])
+
+    def test_input_errors_are_exit_3_and_name_the_place(self):
+        bad = self.out / "bad.kicad_pcb"
+        for content in ("", "(kicad_pcb (version 20221018) (layers", "(" * 10000, "hello", "(kicad_pcb (version nan))", "\0" * 100, "(kicad_pcb (version 20221018)))))"):
+            bad.write_text(content)
+            done = run("inspect", bad)
+            self.assertEqual(done.returncode, 3, (content[:40], done.stderr))
+            self.assertIn("bad.kicad_pcb", done.stderr)
+        self.assertEqual(run("inspect", self.out / "absent.kicad_pcb").returncode, 3)
+        done = run("mesh", SERPENTINE, "--nets", "no_such_net", "-o", self.out / "x.msh")
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("no_such_net", done.stderr)
+
+    def test_output_errors_are_exit_5(self):
+        done = run("mesh", SERPENTINE, "-o", self.out / "absent/x.msh")
+        self.assertEqual(done.returncode, 5)
+        self.assertIn("absent", done.stderr)
+        self.assertEqual(run("mesh", SERPENTINE, "-o", self.out).returncode, 5)
+
+    def test_budget_is_refused_before_anything_is_written(self):
+        done = run("mesh", SERPENTINE, "--longest-edge", "10um", "--max-prisms", "1000", "-o", self.out / "x.msh")
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assertIn("--max-prisms", done.stderr)
+        self.assertEqual(self.leftovers(), [])
+
+    def test_dry_run_counts_and_writes_nothing(self):
+        dry = run_json("mesh", SERPENTINE, "--air", "0", "--dry-run")
+        self.assertEqual(self.leftovers(), [])
+        real = run_json("mesh", SERPENTINE, "--air", "0", "-o", self.out / "x.msh")
+        self.assertEqual(dry["counts"], real["counts"])
+
+    def test_check_finds_damage_and_exits_1(self):
+        run("mesh", SERPENTINE, "--air", "0", "--ascii", "--msh-version", "2.2", "-o", self.out / "x.msh")
+        self.assertEqual(run("check", self.out / "x.msh").returncode, 0)
+        lines = (self.out / "x.msh").read_text().splitlines()
+        start = next(i for i, line in enumerate(lines) if line == "$Nodes") + 2
+        number, x, y, z = lines[start + 40].split()
+        lines[start + 40] = f"{number} {float(x) + 1e-3} {y} {z}"
+        (self.out / "broken.msh").write_text("\n".join(lines) + "\n")
+        done = run("check", self.out / "broken.msh", "--tags", self.out / "x.tags.json")
+        self.assertEqual(done.returncode, 1, done.stdout)
+        report = run_json("check", self.out / "broken.msh")
+        self.assertTrue(report["findings"])
+
+    def test_inspect_json_names_layers_and_nets(self):
+        info = run_json("inspect", SERPENTINE)
+        self.assertEqual(len(info["layers"]), 5)
+        self.assertTrue(all("name" in net and "layers" in net for net in info["nets"]))
+
+    def test_interrupt_leaves_the_old_file_and_no_debris(self):
+        target = self.out / "x.msh"
+        target.write_text("old")
+        process = subprocess.Popen([PROGRAM, "mesh", SERPENTINE, "--air", "0", "--longest-edge", "12um", "-o", target], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+        time.sleep(0.7)
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 130)
+        self.assertEqual(target.read_text(), "old")
+        self.assertEqual([name for name in self.leftovers() if name.endswith(".part")], [])
+
+    def test_same_input_same_bytes(self):
+        for name in ("a", "b"):
+            run("mesh", SERPENTINE, "-o", self.out / f"{name}.msh", "--threads", "1" if name == "a" else "3")
+        self.assertEqual((self.out / "a.msh").read_bytes(), (self.out / "b.msh").read_bytes())
+        self.assertEqual((self.out / "a.tags.json").read_bytes(), (self.out / "b.tags.json").read_bytes())
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=1)
