@@ -30,7 +30,7 @@ enum class FaceTagKind { outer, conductor };
 /// One face group.
 struct FaceTag {
   std::int32_t id = 0;  ///< 1-based, dense, own number space beside the volumes
-  std::string name;     ///< "xmin".."zmax", "side" (other lateral outer faces), or "surface|net"
+  std::string name;     ///< "xmin".."zmax", "side" (all other outer faces), or "surface|net"
   FaceTagKind kind = FaceTagKind::outer;
   std::int32_t net = -1;
   std::int64_t num_triangles = 0;
@@ -81,7 +81,7 @@ struct PrismMeshParts {
 /// @guarantee X3  every face between a prism and a void or the outside is in exactly one of caps and walls
 class PrismMesh {
  public:
-  /// @throws Error internal (901). @cost O(planar mesh x distinct slab masks).
+  /// @throws Error internal (901). @cost O(planar mesh x distinct slab masks + boundary faces x log).
   [[nodiscard]] static PrismMesh from_parts(PrismMeshParts parts);
 
   [[nodiscard]] const PlanarMesh& planar() const { return parts_->planar; }
@@ -118,6 +118,7 @@ class PrismMesh {
   /// Coordinates in metres of nodes [first, first + out.size()). @cost O(out + log levels + block search).
   void fill_nodes(std::int64_t first, std::span<std::array<double, 3>> out) const;
   /// Corners (node ids) of prisms [first, first + out.size()), and the tag index of each if `tags` is not empty.
+  /// Safe to call from several threads. @cost O(out + log sub-layers + block search).
   void fill_prisms(std::int64_t first, std::span<std::array<std::int64_t, 6>> out, std::span<std::int32_t> tags = {}) const;
   /// Triangles of the planar mesh that carry each tag in one slab, grouped: offsets has volume_tags().size() + 1 entries.
   /// Ascending within a tag. @cost O(triangles + tags).
@@ -127,11 +128,19 @@ class PrismMesh {
   /// Subset of 0..n-1 with constant-time rank: bit words and one running count per word. Empty words = the full set.
   struct Mask {
     std::vector<std::uint64_t> words;
-    std::vector<std::int32_t> ranks;
-    std::int32_t size = 0;  ///< members
+    std::vector<std::int32_t> ranks;  ///< members before each word
+    std::int32_t size = 0;            ///< members
+    [[nodiscard]] bool is_full() const { return words.empty(); }
     [[nodiscard]] bool has(std::int32_t i) const;
     [[nodiscard]] std::int32_t rank(std::int32_t i) const;
+    /// Calls visit(i) for members of rank first .. first + count - 1, ascending.
+    template <class Visit>
+    void visit(std::int64_t first, std::int64_t count, Visit&& visit) const;
   };
+  /// Mask from one byte per item; a full set keeps no words.
+  [[nodiscard]] static Mask mask_of(std::span<const char> members);
+  void make_masks();
+  void fill_sublayer(std::int32_t sublayer, std::int64_t rank, std::span<std::array<std::int64_t, 6>> out) const;
   [[nodiscard]] const Mask& level_mask(std::int32_t level) const;
   [[nodiscard]] const Mask& sublayer_mask(std::int32_t sublayer) const;
 

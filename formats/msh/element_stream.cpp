@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "formats/msh/element_stream.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "formats/tags_json/group_names.hpp"
+#include "pcbmesh/base/error.hpp"
+
+namespace pcbmesh::formats::msh {
+namespace {
+
+constexpr std::size_t cache_budget_bytes = std::size_t{32} << 20;
+
+std::size_t index(std::int32_t i) {
+  return static_cast<std::size_t>(i);
+}
+
+/// Extent that grows; turns into all zeros if it never did.
+class GrowingExtent {
+ public:
+  void add(std::span<const double, 2> min, std::span<const double, 2> max, double z_min, double z_max) {
+    for (std::size_t i = 0; i < 2; ++i) {
+      extent_.min[i] = std::min(extent_.min[i], min[i]);
+      extent_.max[i] = std::max(extent_.max[i], max[i]);
+    }
+    extent_.min[2] = std::min(extent_.min[2], z_min);
+    extent_.max[2] = std::max(extent_.max[2], z_max);
+  }
+  [[nodiscard]] Extent value() const { return extent_.max[2] < extent_.min[2] ? Extent{} : extent_; }
+
+ private:
+  static constexpr double far = std::numeric_limits<double>::infinity();
+  Extent extent_{{far, far, far}, {-far, -far, -far}};
+};
+
+template <class Items>
+auto items_with_tag(const Items& items, std::int32_t tag_index) {
+  return std::ranges::equal_range(items, tag_index, {}, [](const auto& item) { return item.tag; });
+}
+
+}  // namespace
+
+/// Fixed buffer of rows that is handed on whenever it is full.
+class ElementStream::Rows {
+ public:
+  Rows(int width, const Visit& visit) : width_(static_cast<std::size_t>(width)), visit_(visit), buffer_(chunk * width_) {}
+  /// Room for up to `wanted` rows; at least one.
+  std::span<std::int64_t> room(std::size_t wanted) {
+    if (used_ == chunk) flush();
+    return std::span(buffer_).subspan(used_ * width_, std::min(wanted, chunk - used_) * width_);
+  }
+  void advance(std::size_t rows) {
+    used_ += rows;
+    total_ += static_cast<std::int64_t>(rows);
+  }
+  void flush() {
+    if (used_ > 0) visit_(std::span<const std::int64_t>(buffer_).first(used_ * width_));
+    used_ = 0;
+  }
+  [[nodiscard]] std::int64_t total() const { return total_; }
+
+ private:
+  std::size_t width_;
+  const Visit& visit_;
+  std::vector<std::int64_t> buffer_;
+  std::size_t used_ = 0;
+  std::int64_t total_ = 0;
+};
+
+ElementStream::ElementStream(const mesh::PrismMesh& mesh) : mesh_(mesh) {
+  survey_faces();
+  survey_volumes();
+  for (const ElementBlock& block : blocks_) num_elements_ += block.count;
+  const auto triangles = static_cast<std::size_t>(mesh.planar().num_triangles());
+  max_cached_ = std::max<std::size_t>(2, cache_budget_bytes / (sizeof(std::int32_t) * std::max<std::size_t>(triangles, 1)));
+}
+
+void ElementStream::survey_faces() {
+  const auto points = mesh_.planar().points_m();
+  const auto z = mesh_.plan().z_m();
+  std::vector<std::string> names;
+  for (const mesh::FaceTag& tag : mesh_.face_tags()) names.push_back(tag.name);
+  names = tags_json::group_names(names);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const mesh::FaceTag& tag = mesh_.face_tags()[i];
+    const auto tag_index = static_cast<std::int32_t>(i);
+    GrowingExtent extent;
+    std::int64_t num_triangles = 0, num_quads = 0;
+    for (const mesh::Cap& cap : items_with_tag(mesh_.caps(), tag_index)) {
+      ++num_triangles;
+      for (std::int32_t v : mesh_.planar().triangles()[index(cap.triangle)])
+        extent.add(points[index(v)], points[index(v)], z[index(cap.level)], z[index(cap.level)]);
+    }
+    for (const mesh::Wall& wall : items_with_tag(mesh_.walls(), tag_index)) {
+      const std::int32_t low = mesh_.plan().first_sublayer(wall.slab), high = mesh_.plan().first_sublayer(wall.slab + 1);
+      num_quads += high - low;
+      for (std::int32_t v : {wall.a, wall.b}) extent.add(points[index(v)], points[index(v)], z[index(low)], z[index(high)]);
+    }
+    groups_.push_back({2, tag.id, names[i], extent.value()});
+    if (num_triangles > 0) blocks_.push_back({ElementKind::triangle, tag_index, tag.id, num_triangles});
+    if (num_quads > 0) blocks_.push_back({ElementKind::quadrangle, tag_index, tag.id, num_quads});
+  }
+}
+
+void ElementStream::survey_volumes() {
+  const mesh::PlanarMesh& planar = mesh_.planar();
+  const mesh::LayerPlan& plan = mesh_.plan();
+  constexpr double far = std::numeric_limits<double>::infinity();
+  struct Region {
+    std::array<double, 2> min{far, far}, max{-far, -far};
+    std::int32_t triangle = -1;  ///< any of its triangles: all share the region's tags
+  };
+  std::vector<Region> regions(index(planar.num_regions()));
+  for (std::int32_t t = 0; t < planar.num_triangles(); ++t) {
+    Region& region = regions[index(planar.regions()[index(t)])];
+    region.triangle = t;
+    for (std::int32_t v : planar.triangles()[index(t)]) {
+      const auto& point = planar.points_m()[index(v)];
+      for (std::size_t i = 0; i < 2; ++i) {
+        region.min[i] = std::min(region.min[i], point[i]);
+        region.max[i] = std::max(region.max[i], point[i]);
+      }
+    }
+  }
+  const std::size_t num_tags = mesh_.volume_tags().size();
+  std::vector<GrowingExtent> extents(num_tags);
+  slabs_of_tag_.resize(num_tags);
+  for (std::int32_t slab = 0; slab < plan.num_slabs(); ++slab) {
+    const double bottom = plan.z_m()[index(plan.first_sublayer(slab))], top = plan.z_m()[index(plan.first_sublayer(slab + 1))];
+    for (const Region& region : regions) {
+      const std::int32_t tag = region.triangle < 0 ? -1 : mesh_.tag_of(slab, region.triangle);
+      if (tag < 0) continue;
+      extents[index(tag)].add(region.min, region.max, bottom, top);
+      std::vector<std::int32_t>& slabs = slabs_of_tag_[index(tag)];
+      if (slabs.empty() || slabs.back() != slab) slabs.push_back(slab);
+    }
+  }
+  std::vector<std::string> names;
+  for (const mesh::VolumeTag& tag : mesh_.volume_tags()) names.push_back(tag.name);
+  names = tags_json::group_names(names);
+  for (std::size_t i = 0; i < num_tags; ++i) {
+    const mesh::VolumeTag& tag = mesh_.volume_tags()[i];
+    groups_.push_back({3, tag.id, names[i], extents[i].value()});
+    if (tag.num_prisms > 0) blocks_.push_back({ElementKind::wedge, static_cast<std::int32_t>(i), tag.id, tag.num_prisms});
+  }
+}
+
+void ElementStream::visit(const ElementBlock& block, const Visit& visit) {
+  Rows rows(num_corners(block.kind), visit);
+  if (block.kind == ElementKind::triangle)
+    visit_caps(block.tag_index, rows);
+  else if (block.kind == ElementKind::quadrangle)
+    visit_walls(block.tag_index, rows);
+  else
+    visit_wedges(block.tag_index, rows);
+  rows.flush();
+  // Counts went into the file before the rows: a mesh whose tag table lies must not become a file that lies.
+  PCBMESH_ASSERT(rows.total() == block.count);
+}
+
+void ElementStream::visit_caps(std::int32_t tag_index, Rows& rows) const {
+  for (const mesh::Cap& cap : items_with_tag(mesh_.caps(), tag_index)) {
+    auto [a, b, c] = mesh_.planar().triangles()[index(cap.triangle)];
+    if (!cap.up) std::swap(b, c);
+    const auto out = rows.room(1);
+    out[0] = mesh_.node_id(cap.level, a);
+    out[1] = mesh_.node_id(cap.level, b);
+    out[2] = mesh_.node_id(cap.level, c);
+    rows.advance(1);
+  }
+}
+
+void ElementStream::visit_walls(std::int32_t tag_index, Rows& rows) const {
+  for (const mesh::Wall& wall : items_with_tag(mesh_.walls(), tag_index)) {
+    const std::int32_t last = mesh_.plan().first_sublayer(wall.slab + 1);
+    for (std::int32_t k = mesh_.plan().first_sublayer(wall.slab); k < last; ++k) {
+      const auto out = rows.room(1);
+      out[0] = mesh_.node_id(k, wall.a);
+      out[1] = mesh_.node_id(k, wall.b);
+      out[2] = mesh_.node_id(k + 1, wall.b);
+      out[3] = mesh_.node_id(k + 1, wall.a);
+      rows.advance(1);
+    }
+  }
+}
+
+void ElementStream::visit_wedges(std::int32_t tag_index, Rows& rows) {
+  for (const std::int32_t slab : slabs_of_tag_[index(tag_index)]) {
+    const auto triangles = triangles_of(slab, tag_index);
+    const std::int32_t last = mesh_.plan().first_sublayer(slab + 1);
+    for (std::int32_t k = mesh_.plan().first_sublayer(slab); k < last; ++k) visit_sublayer(k, triangles, rows);
+  }
+}
+
+void ElementStream::visit_sublayer(std::int32_t sublayer, std::span<const std::int32_t> triangles, Rows& rows) const {
+  const auto corners = mesh_.planar().triangles();
+  const std::int64_t low = mesh_.first_node_of_level(sublayer), high = mesh_.first_node_of_level(sublayer + 1);
+  const std::int64_t num_points = mesh_.planar().num_points();
+  const bool low_is_full = mesh_.num_nodes_of_level(sublayer) == num_points;
+  const bool high_is_full = mesh_.num_nodes_of_level(sublayer + 1) == num_points;
+  for (std::size_t done = 0; done < triangles.size();) {
+    const auto out = rows.room(triangles.size() - done);
+    std::int64_t* to = out.data();
+    const std::size_t count = out.size() / 6;
+    for (const std::int32_t t : triangles.subspan(done, count)) {
+      const auto& triangle = corners[index(t)];
+      // Levels without gaps number their nodes like the plane does: no look-up.
+      for (std::size_t i = 0; i < 3; ++i) {
+        to[i] = low_is_full ? low + triangle[i] : mesh_.node_id(sublayer, triangle[i]);
+        to[i + 3] = high_is_full ? high + triangle[i] : mesh_.node_id(sublayer + 1, triangle[i]);
+      }
+      to += 6;
+    }
+    rows.advance(count);
+    done += count;
+  }
+}
+
+std::span<const std::int32_t> ElementStream::triangles_of(std::int32_t slab, std::int32_t tag_index) {
+  auto entry = std::ranges::find(cache_, slab, &SlabGroups::slab);
+  if (entry == cache_.end()) {
+    if (cache_.size() < max_cached_) {
+      entry = cache_.insert(cache_.end(), SlabGroups{});
+    } else {
+      entry = std::ranges::min_element(cache_, {}, &SlabGroups::last_use);
+    }
+    entry->slab = slab;
+    mesh_.group_triangles(slab, entry->offsets, entry->triangles);
+  }
+  entry->last_use = ++clock_;
+  const auto first = index(entry->offsets[index(tag_index)]), last = index(entry->offsets[index(tag_index) + 1]);
+  return std::span<const std::int32_t>(entry->triangles).subspan(first, last - first);
+}
+
+}  // namespace pcbmesh::formats::msh

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pcbmesh/mesh/prism_mesh.hpp"
+
+namespace pcbmesh::formats::msh {
+
+/// Gmsh's numbers of the element kinds written.
+enum class ElementKind : std::int32_t { triangle = 2, quadrangle = 3, wedge = 6 };
+
+[[nodiscard]] constexpr int num_corners(ElementKind kind) {
+  return kind == ElementKind::triangle ? 3 : kind == ElementKind::quadrangle ? 4 : 6;
+}
+
+/// Elements of one kind that carry one tag.
+struct ElementBlock {
+  ElementKind kind = ElementKind::wedge;
+  std::int32_t tag_index = 0;  ///< into face_tags or volume_tags
+  std::int32_t tag = 0;        ///< its id
+  std::int64_t count = 0;      ///< > 0
+  [[nodiscard]] int dimension() const { return kind == ElementKind::wedge ? 3 : 2; }
+};
+
+/// Extent in metres; all zero if nothing carries the tag.
+struct Extent {
+  std::array<double, 3> min{};
+  std::array<double, 3> max{};
+};
+
+/// A physical group as files name it.
+struct Group {
+  int dimension = 3;
+  std::int32_t tag = 0;
+  std::string name;  ///< unique within its dimension, at most 127 bytes, no quotes or control characters
+  Extent extent;
+};
+
+/// Boundary faces, then prisms of an implicit mesh, block by block in file order; never holds the 3D mesh.
+/// Faces are oriented outwards, seen from the meshed side.
+///
+/// @cost memory O(regions x tags in use) + at most max(32 MiB, two slabs' triangle lists).
+class ElementStream {
+ public:
+  explicit ElementStream(const mesh::PrismMesh& mesh);
+
+  [[nodiscard]] const mesh::PrismMesh& mesh() const { return mesh_; }
+  /// Faces by tag (triangles before quadrangles), then volumes by tag; empty blocks are left out.
+  [[nodiscard]] std::span<const ElementBlock> blocks() const { return blocks_; }
+  [[nodiscard]] std::int64_t num_elements() const { return num_elements_; }
+  /// Faces by tag, then volumes by tag.
+  [[nodiscard]] std::span<const Group> groups() const { return groups_; }
+
+  /// Corners (node ids from 0), num_corners(kind) per element; at most `chunk` elements a call.
+  using Visit = std::function<void(std::span<const std::int64_t> corners)>;
+  void visit(const ElementBlock& block, const Visit& visit);
+  static constexpr std::size_t chunk = 1024;
+
+ private:
+  struct SlabGroups {
+    std::int32_t slab = -1;
+    std::uint64_t last_use = 0;
+    std::vector<std::int32_t> offsets, triangles;
+  };
+  class Rows;
+  void survey_volumes();
+  void survey_faces();
+  void visit_caps(std::int32_t tag_index, Rows& rows) const;
+  void visit_walls(std::int32_t tag_index, Rows& rows) const;
+  void visit_wedges(std::int32_t tag_index, Rows& rows);
+  void visit_sublayer(std::int32_t sublayer, std::span<const std::int32_t> triangles, Rows& rows) const;
+  [[nodiscard]] std::span<const std::int32_t> triangles_of(std::int32_t slab, std::int32_t tag_index);
+
+  mesh::PrismMesh mesh_;
+  std::vector<ElementBlock> blocks_;
+  std::vector<Group> groups_;
+  std::int64_t num_elements_ = 0;
+  std::vector<std::vector<std::int32_t>> slabs_of_tag_;
+  std::vector<SlabGroups> cache_;
+  std::size_t max_cached_ = 2;
+  std::uint64_t clock_ = 0;
+};
+
+}  // namespace pcbmesh::formats::msh

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "formats/msh/write_msh.hpp"
+
+namespace pcbmesh::formats::msh {
+namespace {
+
+/// Writes int, size_t and double as the mode wants them: packed, or followed by a blank.
+class Fields {
+ public:
+  explicit Fields(const WriteJob& job) : sink_(job.sink), binary_(job.binary) {}
+  void integer(std::int32_t value) { field(value); }
+  void size(std::int64_t value) { field(static_cast<std::uint64_t>(value)); }
+  void real(double value) { field(value); }
+  void end_line() {
+    if (!binary_) sink_.put("\n");
+  }
+
+ private:
+  template <class T>
+  void field(T value) {
+    if (binary_) return sink_.put_raw(value);
+    sink_.put_number(value);
+    sink_.put(" ");
+  }
+  FileSink& sink_;
+  bool binary_;
+};
+
+void write_entities(const WriteJob& job) {
+  Fields out(job);
+  job.sink.put("$Entities\n");
+  const auto groups = job.elements.groups();
+  const auto num_surfaces = std::ranges::count(groups, 2, &Group::dimension);
+  for (const std::int64_t count : {std::int64_t{0}, std::int64_t{0}, static_cast<std::int64_t>(num_surfaces),
+                                   static_cast<std::int64_t>(groups.size()) - num_surfaces})
+    out.size(count);
+  out.end_line();
+  for (const Group& group : groups) {  // faces stand before volumes, as the section wants it
+    out.integer(group.tag);
+    for (const auto& corner : {group.extent.min, group.extent.max})
+      for (const double x : corner) out.real(x * job.scale);
+    out.size(1);
+    out.integer(group.tag);
+    out.size(0);  // no bounding entities: readers rebuild adjacency from the elements
+    out.end_line();
+  }
+  job.sink.put(job.binary ? "\n$EndEntities\n" : "$EndEntities\n");
+}
+
+void write_node_tags(const WriteJob& job, std::int64_t num_nodes) {
+  constexpr std::int64_t block = 8192;
+  for (std::int64_t first = 1; first <= num_nodes; first += block) {
+    const std::int64_t last = std::min(num_nodes, first + block - 1);
+    if (job.binary) {
+      const auto size = static_cast<std::size_t>(last - first + 1) * sizeof first;
+      char* to = job.sink.room(size);
+      for (std::int64_t tag = first; tag <= last; ++tag, to += sizeof tag) std::memcpy(to, &tag, sizeof tag);
+      job.sink.advance(size);
+    } else {
+      for (std::int64_t tag = first; tag <= last; ++tag) {
+        job.sink.put_number(tag);
+        job.sink.put("\n");
+      }
+    }
+    job.progress.check();
+  }
+}
+
+void write_nodes(const WriteJob& job, Meter& meter) {
+  Fields out(job);
+  FileSink& sink = job.sink;
+  const mesh::PrismMesh& mesh = job.elements.mesh();
+  const std::int64_t num_nodes = mesh.num_nodes();
+  sink.put("$Nodes\n");
+  for (const std::int64_t count : {std::int64_t{num_nodes > 0}, num_nodes, std::int64_t{num_nodes > 0}, num_nodes})
+    out.size(count);
+  out.end_line();
+  if (num_nodes > 0) {
+    out.integer(3);
+    out.integer(mesh.volume_tags().front().id);
+    out.integer(0);  // no parametric coordinates
+    out.size(num_nodes);
+    out.end_line();
+  }
+  write_node_tags(job, num_nodes);
+  visit_nodes(job, [&](std::int64_t, std::span<const std::array<double, 3>> nodes) {
+    if (job.binary) {
+      sink.put_bytes(nodes.data(), nodes.size_bytes());
+    } else {
+      for (const auto& node : nodes)
+        for (std::size_t i = 0; i < 3; ++i) {
+          sink.put_number(node[i]);
+          sink.put(i < 2 ? " " : "\n");
+        }
+    }
+    meter.add(static_cast<std::int64_t>(nodes.size()));
+  });
+  sink.put(job.binary ? "\n$EndNodes\n" : "$EndNodes\n");
+}
+
+/// One element per row: its tag, then its nodes' tags, counted from 1.
+void write_rows(const WriteJob& job, std::size_t width, std::int64_t first_tag, std::span<const std::int64_t> corners) {
+  std::int64_t tag = first_tag;
+  if (job.binary) {
+    const std::size_t num_rows = corners.size() / width, size = num_rows * (width + 1) * sizeof tag;
+    char* to = job.sink.room(size);
+    for (std::size_t row = 0; row < num_rows; ++row, ++tag) {
+      std::array<std::int64_t, 7> fields;
+      fields[0] = tag;
+      for (std::size_t i = 0; i < width; ++i) fields[i + 1] = corners[row * width + i] + 1;
+      std::memcpy(to, fields.data(), (width + 1) * sizeof tag);
+      to += (width + 1) * sizeof tag;
+    }
+    job.sink.advance(size);
+    return;
+  }
+  for (std::size_t at = 0; at < corners.size(); at += width, ++tag) {
+    job.sink.put_number(tag);
+    for (std::size_t i = 0; i < width; ++i) {
+      job.sink.put(" ");
+      job.sink.put_number(corners[at + i] + 1);
+    }
+    job.sink.put("\n");
+  }
+}
+
+void write_elements(const WriteJob& job, Meter& meter) {
+  Fields out(job);
+  const std::int64_t num_elements = job.elements.num_elements();
+  job.sink.put("$Elements\n");
+  for (const std::int64_t count :
+       {static_cast<std::int64_t>(job.elements.blocks().size()), num_elements, std::int64_t{num_elements > 0}, num_elements})
+    out.size(count);
+  out.end_line();
+  std::int64_t tag = 1;
+  for (const ElementBlock& block : job.elements.blocks()) {
+    out.integer(block.dimension());
+    out.integer(block.tag);
+    out.integer(static_cast<std::int32_t>(block.kind));
+    out.size(block.count);
+    out.end_line();
+    const auto width = static_cast<std::size_t>(num_corners(block.kind));
+    job.elements.visit(block, [&](std::span<const std::int64_t> corners) {
+      write_rows(job, width, tag, corners);
+      const auto count = static_cast<std::int64_t>(corners.size() / width);
+      tag += count;
+      meter.add(count);
+    });
+  }
+  job.sink.put(job.binary ? "\n$EndElements\n" : "$EndElements\n");
+}
+
+}  // namespace
+
+std::uint64_t expected_bytes_41(const ElementStream& elements, bool binary) {
+  if (!binary) return 0;
+  std::uint64_t bytes = static_cast<std::uint64_t>(elements.mesh().num_nodes()) * 32;
+  for (const ElementBlock& block : elements.blocks())
+    bytes += static_cast<std::uint64_t>(block.count) * static_cast<std::uint64_t>(8 + 8 * num_corners(block.kind));
+  return bytes;
+}
+
+void write_41(const WriteJob& job) {
+  Meter meter(job.progress, job.elements.mesh().num_nodes() + job.elements.num_elements());
+  write_opening(job, "4.1");
+  write_entities(job);
+  write_nodes(job, meter);
+  write_elements(job, meter);
+}
+
+}  // namespace pcbmesh::formats::msh

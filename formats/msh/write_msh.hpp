@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "formats/msh/element_stream.hpp"
+#include "formats/sink/file_sink.hpp"
+#include "pcbmesh/base/progress.hpp"
+#include "pcbmesh/formats/registry.hpp"
+
+namespace pcbmesh::formats::msh {
+
+/// Everything the two versions' writers need; one per file.
+struct WriteJob {
+  ElementStream& elements;
+  FileSink& sink;
+  bool binary = true;
+  double scale = 1;  ///< written units per metre
+  const Progress& progress;
+};
+
+/// MSH 4.1: one discrete entity per physical group, entity tag = physical tag, no points or curves; all nodes in one block.
+void write_41(const WriteJob& job);
+
+/// MSH 2.2: tags (physical, elementary = physical); binary blocks have one header for all elements of a tag.
+/// @throws Error format_limit (703) beyond 2^31 - 1 nodes or elements, before anything is written.
+void write_22(const WriteJob& job);
+
+/// Size of the file in bytes but for its few kB of headers; 0 for text, whose size nobody knows before.
+[[nodiscard]] std::uint64_t expected_bytes_41(const ElementStream& elements, bool binary);
+[[nodiscard]] std::uint64_t expected_bytes_22(const ElementStream& elements, bool binary);
+
+/// "$MeshFormat" and "$PhysicalNames", alike in both versions. `version` as the file shall say it.
+void write_opening(const WriteJob& job, std::string_view version);
+
+/// Scaled coordinates of all nodes in id order, block by block. `first` is the id of the block's first node, from 0.
+using NodeVisit = std::function<void(std::int64_t first, std::span<const std::array<double, 3>> nodes)>;
+void visit_nodes(const WriteJob& job, const NodeVisit& visit);
+
+/// Reports progress over nodes and elements without a call per block.
+class Meter {
+ public:
+  Meter(const Progress& progress, std::int64_t total) : progress_(progress), total_(std::max<std::int64_t>(total, 1)) {}
+  /// @throws Error cancelled (103).
+  void add(std::int64_t count) {
+    done_ += count;
+    if ((++calls_ & 63U) == 0) progress_.at("write", static_cast<double>(done_) / static_cast<double>(total_));
+  }
+
+ private:
+  const Progress& progress_;
+  std::int64_t total_, done_ = 0;
+  std::uint32_t calls_ = 0;
+};
+
+}  // namespace pcbmesh::formats::msh

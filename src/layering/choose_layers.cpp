@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pcbmesh/layering/choose_layers.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "pcbmesh/base/error.hpp"
+
+namespace pcbmesh::layering {
+namespace {
+
+using study::HeightPolicy;
+using study::SublayerRule;
+
+constexpr int most_sublayers_of_slab = 1'000'000;
+constexpr std::int64_t most_sublayers = 10'000'000;
+// Heights come from divisions and sums of decimal lengths: 0.4 / 0.1 must count as 4 although it may fall an ulp short.
+constexpr double ratio_tolerance = 1e-9;
+
+double height_m(const model::Slab& slab) {
+  return static_cast<double>(slab.z_top_nm - slab.z_bottom_nm) * metres_per_nm;
+}
+
+void require_positive(double height, const char* what) {
+  if (height > 0 && std::isfinite(height)) return;
+  throw Error(
+      ErrorCode::layering_invalid,
+      fmt::format("{} is {} m, but sub-layers need a positive height; check the stackup and the height policy", what, height));
+}
+
+double thinnest_board_slab_m(std::span<const model::Slab> slabs) {
+  double thinnest = std::numeric_limits<double>::infinity();
+  for (const model::Slab& slab : slabs) {
+    if (slab.kind != model::SlabKind::air) thinnest = std::min(thinnest, height_m(slab));
+  }
+  if (!std::isfinite(thinnest)) {
+    throw Error(ErrorCode::layering_invalid,
+                "the thinnest layer is asked for, but the domain has no board layer; choose height policy none");
+  }
+  return thinnest;
+}
+
+int to_count(double count) {
+  if (count >= static_cast<double>(std::numeric_limits<int>::max())) return std::numeric_limits<int>::max();
+  return std::max(1, static_cast<int>(count));
+}
+
+}  // namespace
+
+std::optional<double> common_height_m(HeightPolicy policy, const HeightStatistics& heights,
+                                      std::span<const model::Slab> slabs) {
+  const auto from_mesh = [](double height) {
+    require_positive(height, "the optimal height of the planar mesh");
+    return height;
+  };
+  switch (policy) {
+    case HeightPolicy::none:
+      return std::nullopt;
+    case HeightPolicy::basic:
+    case HeightPolicy::thinnest_layer:
+      return thinnest_board_slab_m(slabs);
+    case HeightPolicy::average:
+      return from_mesh(heights.average);
+    case HeightPolicy::maximum:
+      return from_mesh(heights.maximum);
+    case HeightPolicy::minimum:
+      return from_mesh(heights.minimum);
+  }
+  report_bug("known height policy", __FILE__, __LINE__);
+}
+
+std::optional<double> feedback_edge_m(HeightPolicy policy, double common_height_m, double longest_edge_m) {
+  const bool feeds_back = policy != HeightPolicy::none && policy != HeightPolicy::basic;
+  if (feeds_back && common_height_m < longest_edge_m) return common_height_m;
+  return std::nullopt;
+}
+
+int num_sublayers(SublayerRule rule, double layer_height_m, double common_height_m, const HeightStatistics& final_heights) {
+  if (rule == SublayerRule::none) return 1;
+  require_positive(layer_height_m, "a layer height");
+  if (rule == SublayerRule::optimal) {
+    require_positive(final_heights.average, "the mean optimal height of the final mesh");
+    return optimal_cuts(layer_height_m, final_heights.average);
+  }
+  require_positive(common_height_m, "the common prism height");
+  const double ratio = layer_height_m / common_height_m;
+  switch (rule) {
+    case SublayerRule::floor:
+      return to_count(std::floor(ratio + ratio_tolerance));
+    case SublayerRule::round:
+      return to_count(std::floor(ratio + 0.5 + ratio_tolerance));
+    case SublayerRule::ceil:
+      return to_count(std::ceil(ratio - ratio_tolerance));
+    case SublayerRule::none:
+    case SublayerRule::optimal:
+      break;
+  }
+  report_bug("known sub-layer rule", __FILE__, __LINE__);
+}
+
+mesh::LayerPlan choose_layers(std::span<const model::Slab> slabs, SublayerRule rule, std::optional<double> common_height_m,
+                              const HeightStatistics& final_heights) {
+  if (slabs.empty()) throw Error(ErrorCode::layering_invalid, "the domain has no layers to cut");
+  mesh::LayerPlanParts parts;
+  parts.z_m.push_back(static_cast<double>(slabs.front().z_bottom_nm) * metres_per_nm);
+  for (std::size_t s = 0; s < slabs.size(); ++s) {
+    const model::Slab& slab = slabs[s];
+    const bool is_cut = common_height_m.has_value() || rule == SublayerRule::optimal;
+    const int count = is_cut ? num_sublayers(rule, height_m(slab), common_height_m.value_or(0), final_heights) : 1;
+    if (count > most_sublayers_of_slab || static_cast<std::int64_t>(parts.slab.size()) + count > most_sublayers) {
+      Spot spot;
+      spot.layer = slab.layer;
+      throw Error(ErrorCode::layering_invalid,
+                  fmt::format("the layer would be cut into {} sub-layers, more than {} for a layer or {} for the stack; use a "
+                              "larger common height (another height policy) or sub-layer rule none",
+                              count, most_sublayers_of_slab, most_sublayers),
+                  spot);
+    }
+    const auto bottom = static_cast<double>(slab.z_bottom_nm), height = static_cast<double>(slab.z_top_nm - slab.z_bottom_nm);
+    for (int k = 1; k <= count; ++k) {
+      const double z_nm = k == count ? static_cast<double>(slab.z_top_nm) : bottom + height * k / count;
+      parts.z_m.push_back(z_nm * metres_per_nm);
+      parts.slab.push_back(static_cast<std::int32_t>(s));
+    }
+  }
+  return mesh::LayerPlan::from_parts(std::move(parts));
+}
+
+}  // namespace pcbmesh::layering
