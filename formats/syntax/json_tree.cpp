@@ -302,7 +302,9 @@ Nm JsonValue::as_length(double mm_per_unit) const {
     return parse_length(text);
   } catch (const Error& error) {
     if (!error.spot().file.empty() || error.spot().line > 0) throw;
-    fail(error.text());
+    // A length beyond any board is a bad number of a board file, but a wrong field of a study.
+    const bool plain_number = error.code() == ErrorCode::input_number && document_->field_error_ == ErrorCode::file_syntax;
+    fail(plain_number ? ErrorCode::input_number : document_->field_error_, error.text());
   }
 }
 

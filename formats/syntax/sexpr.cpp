@@ -231,7 +231,11 @@ bool Sexpr::has_word(std::string_view word) const noexcept {
 }
 
 std::int64_t Sexpr::line() const noexcept {
-  return tree_ == nullptr ? 0 : tree_->line_of(tree_->nodes_[index_].begin_and_kind / 4);
+  return tree_ == nullptr ? 0 : tree_->line_of(offset());
+}
+
+std::size_t Sexpr::offset() const noexcept {
+  return tree_ == nullptr ? 0 : tree_->nodes_[index_].begin_and_kind / 4;
 }
 
 }  // namespace pcbmesh::formats::syntax

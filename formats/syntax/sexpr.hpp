@@ -40,6 +40,8 @@ class Sexpr {
   [[nodiscard]] bool has_word(std::string_view word) const noexcept;
   /// 1-based line, 0 if absent. @cost O(log lines).
   [[nodiscard]] std::int64_t line() const noexcept;
+  /// Byte offset in the file, 0 if absent.
+  [[nodiscard]] std::size_t offset() const noexcept;
 
   class Iterator;
   /// Items of a list, head included, for range-for.

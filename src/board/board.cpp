@@ -120,7 +120,7 @@ Board Board::from_parts(BoardParts parts) {
       throw Error(ErrorCode::board_invalid,
                   fmt::format("hole spans copper layers {} to {} of {}", drill.first_copper, drill.last_copper, num_copper),
                   {.file = parts.source, .line = drill.line});
-    if (drill.figure.pen <= 0)
+    if (drill.figure.pen <= 0 && !drill.figure.filled)
       throw Error(ErrorCode::board_invalid, "hole with diameter 0", {.file = parts.source, .line = drill.line});
     require_figure(parts, drill.figure, drill.line, "hole");
   }

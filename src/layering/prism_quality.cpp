@@ -43,9 +43,8 @@ double cut_threshold(int n) {
 int optimal_cuts(double layer_height, double optimal_height) {
   const double ratio = layer_height / optimal_height;
   if (ratio >= 2147483646.0) return std::numeric_limits<int>::max();
-  // s_n lies between n and n + 1/2, so the answer is floor(ratio) or one more.
+  // s_n lies between n and n + 1/2, so the answer is floor(ratio) or one more, never less.
   int n = std::max(1, static_cast<int>(ratio));
-  while (n > 1 && ratio <= cut_threshold(n - 1)) --n;
   while (ratio > cut_threshold(n)) ++n;
   return n;
 }

@@ -53,7 +53,7 @@ struct Shape {
 
 /// Drilled or routed hole through a span of copper layers.
 struct Drill {
-  geometry::Figure figure;        ///< dot or segment with pen = tool diameter; pen > 0
+  geometry::Figure figure;        ///< dot or segment with pen = tool diameter > 0; or a filled closed path, routed
   std::int32_t first_copper = 0;  ///< topmost copper layer of the span
   std::int32_t last_copper = 0;   ///< bottommost, >= first_copper
   bool plated = true;
@@ -96,7 +96,7 @@ struct BoardParts {
 ///
 /// @guarantee B1  every shape names an existing copper layer and net; every layer an existing material
 /// @guarantee B2  thicknesses > 0, at least one copper layer
-/// @guarantee B3  drill spans are ordered and inside the stack, tool diameters > 0
+/// @guarantee B3  drill spans are ordered and inside the stack, tool diameters > 0 (or a filled path)
 /// @guarantee B4  all coordinates are within max_coordinate_nm; outlines are closed
 class Board {
  public:

@@ -22,7 +22,7 @@ struct Grading {
 struct TriangulateOptions {
   double longest_edge_nm = 2e6;  ///< > 0; a double: the feedback of h must not be rounded
   double min_angle_deg = 20.7;   ///< in (0, 28.6]
-  std::optional<Grading> grading;
+  std::optional<Grading> grading{};
   std::int64_t max_vertices = 50'000'000;
 };
 

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+// The visitor's header does not include what it uses, so it comes last.
+// clang-format off
+#include <CGAL/Mesh_2/Clusters.h>
+#include <CGAL/Mesh_2/Refine_edges_with_clusters.h>
+#include <CGAL/Mesh_2/Refine_faces.h>
+#include <CGAL/Mesh_2/Refine_edges_visitor.h>
+// clang-format on
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "pcbmesh/base/error.hpp"
+#include "src/triangulate/cdt.hpp"
+#include "src/triangulate/graph_edges.hpp"
+#include "src/triangulate/mesh_bounds.hpp"
+
+namespace pcbmesh::triangulate {
+
+using Zone = CGAL::Triangulation_mesher_level_traits_2<Cdt>::Zone;
+
+/// Does every edge round the zone see p on its inner side? Then joining p to them makes proper triangles only.
+[[nodiscard]] inline bool is_star_shaped(const Cdt& cdt, const Kernel::Point_2& p, const Zone& zone) {
+  for (const auto& [outer, i] : zone.boundary_edges) {
+    const auto a = outer->vertex(Cdt::cw(i)), b = outer->vertex(Cdt::ccw(i));
+    if (cdt.is_infinite(a) || cdt.is_infinite(b)) continue;
+    if (cdt.orientation(a->point(), b->point(), p) != CGAL::LEFT_TURN) return false;
+  }
+  return true;
+}
+
+/// Gabriel property, but edges below a floor always have it: near-coincident edges would split each other for ever.
+struct ConformsAboveFloor : CGAL::Mesh_2::Is_locally_conforming_Gabriel<Cdt> {
+  using Gabriel = CGAL::Mesh_2::Is_locally_conforming_Gabriel<Cdt>;
+  double floor2_nm2 = 0;
+
+  [[nodiscard]] bool is_below_floor(Cdt::Vertex_handle a, Cdt::Vertex_handle b) const {
+    return CGAL::squared_distance(a->point(), b->point()) < floor2_nm2;
+  }
+  bool operator()(const Cdt& cdt, Cdt::Face_handle face, int i) const {
+    return Gabriel::operator()(cdt, face, i) || is_below_floor(face->vertex(Cdt::cw(i)), face->vertex(Cdt::ccw(i)));
+  }
+  bool operator()(const Cdt& cdt, Cdt::Vertex_handle a, Cdt::Vertex_handle b) const {
+    return Gabriel::operator()(cdt, a, b) || is_below_floor(a, b);
+  }
+  bool operator()(const Cdt& cdt, Cdt::Face_handle face, int i, const Kernel::Point_2& p) const {
+    return Gabriel::operator()(cdt, face, i, p) || is_below_floor(face->vertex(Cdt::cw(i)), face->vertex(Cdt::ccw(i)));
+  }
+};
+
+/// CGAL's edge level; it also writes down on which graph edge each new vertex lies.
+class EdgeSplitting : public CGAL::Mesh_2::Refine_edges_base_with_clusters<Cdt, ConformsAboveFloor> {
+  using Base = CGAL::Mesh_2::Refine_edges_base_with_clusters<Cdt, ConformsAboveFloor>;
+
+ public:
+  using Base::Base;
+
+  void configure(const MeshBounds& bounds, const GraphEdgeIndex& graph_edges) {
+    this->is_locally_conform.floor2_nm2 = bounds.floor_nm() * bounds.floor_nm();
+    graph_edges_ = &graph_edges;
+  }
+
+  void after_insertion_impl(const Cdt::Vertex_handle& v) {
+    const Cdt::Vertex_handle a = this->va, b = this->vb;
+    v->set_graph_edge(a->is_on_graph_edge()   ? a->graph_edge()
+                      : b->is_on_graph_edge() ? b->graph_edge()
+                                              : graph_edges_->find(a->graph_vertex(), b->graph_vertex()));
+    Base::after_insertion_impl(v);
+  }
+
+  CGAL::Mesher_level_conflict_status private_test_point_conflict_impl(const Kernel::Point_2& p, triangulate::Zone& zone) const {
+    if (is_star_shaped(this->tr, p, zone)) return CGAL::NO_CONFLICT;
+    Spot spot;
+    spot.at_mm = {p.x() * 1e-6, p.y() * 1e-6};
+    throw Error(ErrorCode::triangulation_limit,
+                "an edge can't be split: another edge is nearer than double precision can tell. Use a larger --tolerance",
+                spot);
+  }
+
+ private:
+  const GraphEdgeIndex* graph_edges_ = nullptr;
+};
+
+/// Face level of Delaunay refinement with a queue of bad faces that is last in, first out. CGAL's own queue keeps faces
+/// sorted in two maps, which is two thirds of its time; the youngest faces are in cache, and an entry whose face has
+/// changed since is skipped when met (its ticket is no longer the face's).
+template <class Triangulation, class Bounds, class EdgeLevel>
+class FaceSplitting : public CGAL::Triangulation_mesher_level_traits_2<Triangulation>, public CGAL::No_after_no_insertion {
+ public:
+  using FaceHandle = typename Triangulation::Face_handle;
+  using VertexHandle = typename Triangulation::Vertex_handle;
+  using Point = typename Triangulation::Point;
+
+  /// Names that CGAL's Refine_faces asks of its base.
+  struct Bad_faces {
+    using Direct_entry = std::pair<FaceHandle, std::uint32_t>;
+    using const_iterator = typename std::vector<Direct_entry>::const_iterator;
+  };
+
+  FaceSplitting(Triangulation& triangulation, Bounds& bounds, EdgeLevel& edges)
+      : CGAL::Triangulation_mesher_level_traits_2<Triangulation>(triangulation), bounds_(bounds), edges_(edges) {}
+
+  void scan_triangulation_impl() {
+    queue_.clear();
+    auto& cdt = this->triangulation_ref_impl();
+    for (auto face = cdt.finite_faces_begin(); face != cdt.finite_faces_end(); ++face) enqueue_if_bad(face);
+  }
+
+  bool no_longer_element_to_refine_impl() {
+    while (!queue_.empty() && queue_.back().first->ticket() != queue_.back().second) queue_.pop_back();
+    return queue_.empty();
+  }
+  FaceHandle get_next_element_impl() const { return queue_.back().first; }
+  void pop_next_element_impl() {
+    queue_.back().first->set_ticket(0);
+    queue_.pop_back();
+  }
+
+  Point refinement_point_impl(const FaceHandle& face) const { return this->triangulation_ref_impl().circumcenter(face); }
+
+  void before_conflicts_impl(const FaceHandle& face, const Point&) {
+    edges_.set_imperative_refinement(bounds_.judge(face) == Bounds::Verdict::too_long);
+  }
+
+  /// Faces whose circle holds p, reached from `face` without passing a constrained edge: no point location is needed.
+  Zone conflicts_zone_impl(const Point& p, FaceHandle face) const {
+    const auto& cdt = this->triangulation_ref_impl();
+    Zone zone;
+    zone.fh = zone.parent_face = face;
+    zone.faces.push_back(face);
+    boost::container::small_vector<std::pair<FaceHandle, int>, 64> doors{{face, 2}, {face, 1}, {face, 0}};
+    while (!doors.empty()) {
+      const auto [from, i] = doors.back();
+      doors.pop_back();
+      const FaceHandle next = from->neighbor(i);
+      const int back = next->index(from);
+      if (from->is_constrained(i) || !cdt.test_conflict(p, next)) {
+        zone.boundary_edges.emplace_back(next, back);
+      } else {
+        zone.faces.push_back(next);
+        doors.emplace_back(next, Triangulation::cw(back));  // counter-clockwise round the zone
+        doors.emplace_back(next, Triangulation::ccw(back));
+      }
+    }
+    return zone;
+  }
+
+  CGAL::Mesher_level_conflict_status private_test_point_conflict_impl(const Point& p, const Zone& zone) const {
+    return is_star_shaped(this->triangulation_ref_impl(), p, zone) ? CGAL::NO_CONFLICT
+                                                                   : CGAL::CONFLICT_AND_ELEMENT_SHOULD_BE_DROPPED;
+  }
+
+  void before_insertion_impl(const FaceHandle&, const Point&, Zone& zone) {
+    for (const FaceHandle& face : zone.faces) {
+      face->set_ticket(0);
+      face->set_in_domain(false);
+    }
+  }
+
+  void after_insertion_impl(const VertexHandle& v) {
+    auto face = this->triangulation_ref_impl().incident_faces(v);
+    const auto first = face;
+    do {
+      face->set_in_domain(true);
+      enqueue_if_bad(face);
+    } while (++face != first);
+  }
+
+  /// Called by CGAL's visitor after an edge was split at v.
+  void compute_new_bad_faces(VertexHandle v) {
+    auto face = this->triangulation_ref_impl().incident_faces(v);
+    const auto first = face;
+    do {
+      enqueue_if_bad(face);
+    } while (++face != first);
+  }
+
+ private:
+  void enqueue_if_bad(FaceHandle face) {
+    if (!face->is_in_domain() || bounds_.judge(face) == Bounds::Verdict::good) return;
+    if (++ticket_ == 0) ++ticket_;
+    face->set_ticket(ticket_);
+    queue_.emplace_back(face, ticket_);
+  }
+
+  Bounds& bounds_;
+  EdgeLevel& edges_;
+  std::vector<std::pair<FaceHandle, std::uint32_t>> queue_;
+  std::uint32_t ticket_ = 0;
+};
+
+using EdgeLevel = CGAL::Mesh_2::Refine_edges_with_clusters<Cdt, ConformsAboveFloor, EdgeSplitting>;
+using FaceLevel = CGAL::Mesh_2::Refine_faces<Cdt, const MeshBounds, EdgeLevel, FaceSplitting<Cdt, const MeshBounds, EdgeLevel>>;
+
+}  // namespace pcbmesh::triangulate

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pcbmesh/triangulate/triangulate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <ctime>
+#include <numbers>
+#include <utility>
+
+#include "pcbmesh/base/error.hpp"
+#include "src/triangulate/extract.hpp"
+#include "src/triangulate/flood.hpp"
+#include "src/triangulate/insert_graph.hpp"
+#include "src/triangulate/refine.hpp"
+
+namespace pcbmesh::triangulate {
+namespace {
+
+/// CPU seconds of the process since the last call.
+class CpuClock {
+ public:
+  double lap() {
+    const double now = read(), spent = now - last_;
+    last_ = now;
+    return spent;
+  }
+
+ private:
+  static double read() {
+    std::timespec now{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+  }
+  double last_ = read();
+};
+
+void check(const TriangulateOptions& options) {
+  const auto is_positive = [](double x) { return std::isfinite(x) && x > 0; };
+  if (!is_positive(options.longest_edge_nm)) throw Error(ErrorCode::usage, "the longest edge must be a length above 0");
+  if (!(options.min_angle_deg > 0 && options.min_angle_deg <= 28.6)) {
+    throw Error(ErrorCode::usage,
+                fmt::format("the smallest angle is {} degrees; it must be above 0 and at most 28.6", options.min_angle_deg));
+  }
+  if (options.grading && !(is_positive(options.grading->edge_at_copper_nm) && is_positive(options.grading->growth))) {
+    throw Error(ErrorCode::usage, "grading needs an edge length at copper and a growth above 0");
+  }
+}
+
+std::vector<SegmentDistance::Segment> copper_segments(const mesh::PlanarGraph& graph, const model::Model& model) {
+  const auto bodies = model.bodies();
+  const auto is_copper = [&](const mesh::Increment& increment) {
+    const auto kind = bodies[static_cast<std::size_t>(increment.body)].kind;
+    return kind == model::BodyKind::copper || kind == model::BodyKind::barrel;
+  };
+  std::vector<SegmentDistance::Segment> segments;
+  for (std::size_t e = 0; e < graph.edges().size(); ++e) {
+    const auto increments = graph.increments(e);
+    if (std::none_of(increments.begin(), increments.end(), is_copper)) continue;
+    const auto p = graph.vertices()[static_cast<std::size_t>(graph.edges()[e][0])];
+    const auto q = graph.vertices()[static_cast<std::size_t>(graph.edges()[e][1])];
+    segments.push_back(
+        {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(q.x), static_cast<double>(q.y)});
+  }
+  return segments;
+}
+
+/// Area in nm^2 of the faces inside the domain.
+double mark_domain(Cdt& cdt, const Regions& regions) {
+  double area = 0;
+  for (auto face = cdt.all_faces_begin(); face != cdt.all_faces_end(); ++face) {
+    const bool is_inside = regions.is_in_domain(face->ticket() - 1);
+    face->set_in_domain(is_inside);
+    face->set_ticket(0);
+    if (is_inside) area += cdt.triangle(face).area();
+  }
+  return area;
+}
+
+}  // namespace
+
+TriangulateResult triangulate(const mesh::PlanarGraph& graph, const model::Model& model, const TriangulateOptions& options,
+                              Diagnostics& diagnostics, const Progress& progress) {
+  check(options);
+  for (std::size_t e = 0; e < graph.edges().size(); ++e) {
+    PCBMESH_ASSERT(static_cast<std::size_t>(graph.increments(e).back().body) < model.bodies().size());
+  }
+  progress.at("triangulate", 0);
+  CpuClock clock;
+  TriangulateStatistics statistics;
+  Cdt cdt;
+  insert_graph(graph, cdt, progress);
+  if (cdt.dimension() < 2) {  // no ring, so no domain
+    return {mesh::PlanarMesh::from_parts({.points_m = {},
+                                          .triangles = {},
+                                          .regions = {},
+                                          .constrained = {},
+                                          .region_body_offsets = {0},
+                                          .region_bodies = {}}),
+            statistics};
+  }
+  const GraphEdgeIndex graph_edges(graph);
+  const double area_nm2 = mark_domain(cdt, flood(cdt, graph, graph_edges));
+  statistics.num_input_vertices = static_cast<std::int64_t>(graph.vertices().size());
+  statistics.cdt_s = clock.lap();
+
+  MeshBounds bounds(options.longest_edge_nm, options.min_angle_deg);
+  const SegmentDistance copper(options.grading ? copper_segments(graph, model) : std::vector<SegmentDistance::Segment>{});
+  if (options.grading && !copper.is_empty())
+    bounds.set_grading(options.grading->edge_at_copper_nm, options.grading->growth, copper);
+  // Half as many vertices as triangles, each of about 0.2 L^2 (Ye and Daniels, table 3) where the longest edge drives; for the
+  // bar only.
+  const double expected =
+      3 * static_cast<double>(graph.vertices().size()) + 2.6 * area_nm2 / (options.longest_edge_nm * options.longest_edge_nm);
+  refine(cdt, bounds, graph_edges, options.max_vertices, expected, progress);
+  statistics.refine_s = clock.lap();
+
+  const Regions regions = flood(cdt, graph, graph_edges);
+  Extraction extraction = extract(cdt, regions, bounds.sine2_bound());
+  statistics.num_steiner = extraction.num_vertices - statistics.num_input_vertices;
+  statistics.num_below_bound = extraction.num_below_bound;
+  statistics.min_angle_deg = std::asin(std::sqrt(std::min(extraction.smallest_sine2, 0.75))) * 180 / std::numbers::pi;
+  TriangulateResult result{mesh::PlanarMesh::from_parts(std::move(extraction.parts)), statistics};
+  result.statistics.label_s = clock.lap();
+  if (statistics.num_below_bound > 0) {
+    diagnostics.note(
+        "triangulate.angle_below_bound",
+        fmt::format("{} of {} triangles have an angle below {} degrees (smallest {:.2f}): the features meet at small angles",
+                    statistics.num_below_bound, result.mesh.num_triangles(), options.min_angle_deg, statistics.min_angle_deg));
+  }
+  progress.at("triangulate", 1);
+  return result;
+}
+
+}  // namespace pcbmesh::triangulate
