@@ -158,20 +158,20 @@ Box box_around(const Patch& patch, double margin) {
 void search_slice(const Context& context, const std::vector<std::int64_t>& faces, std::span<const Box> boxes,
                   const BoxTree& tree, std::int64_t first, std::int64_t last, OverlapTallies& tallies) {
   // Faces of a mesh meet a few dozen others; a heap of garbage meets everything, and must not take its square.
-  std::int64_t budget = std::max<std::int64_t>(1'000'000, 4000 * (last - first));
+  constexpr std::int64_t looks_per_pair = 20;  // comparing two faces takes about as long as looking at this many boxes
+  std::int64_t budget = std::max<std::int64_t>(1'000'000, 2000 * (last - first));
   for (std::int64_t i = first; i < last; ++i) {
     const auto here = static_cast<std::size_t>(i);
-    if (budget <= 0) {
-      tallies.not_searched.add(faces[here]);
-      continue;
-    }
     const Patch patch = patch_of(context, faces[here]);
-    budget -= tree.each_meeting(boxes[here], [&](std::size_t there) {
-      if (there > here) {
+    if (budget > 0) {
+      budget -= tree.each_meeting(boxes[here], [&](std::size_t there) {
+        if (there <= here) return true;
         judge_pair(context, std::min(faces[here], faces[there]), patch, patch_of(context, faces[there]), tallies);
-      }
-      return true;
-    });
+        budget -= looks_per_pair;
+        return budget > 0;
+      });
+    }
+    if (budget <= 0) tallies.not_searched.add(faces[here]);
   }
 }
 
