@@ -140,7 +140,7 @@ mesh::MeshData hollowed(const mesh::MeshData& mesh, std::int64_t n) {
   for (std::int64_t i = 0; i < cells.size(); ++i) {
     const std::int64_t square = i / 2 % (n * n);
     const std::int32_t tag = cells.tags[static_cast<std::size_t>(i)];
-    if (tag == 2 && (square % n / 4 + square / n / 4) % 2 == 0) continue;
+    if (tag == 2 && i < cells.size() - 2 * n * n && (square % n / 4 + square / n / 4) % 2 == 0) continue;
     std::copy_n(cells.corners.begin() + 6 * i, 6, cells.corners.begin() + 6 * kept);
     cells.tags[static_cast<std::size_t>(kept++)] = tag;
   }
