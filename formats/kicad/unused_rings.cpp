@@ -15,7 +15,9 @@ using geometry::Box;
 using geometry::Point;
 using geometry::Ring;
 
-constexpr geometry::ArcOptions coarse{};
+constexpr geometry::ArcOptions coarse{.sagitta_nm = nm_per_um};
+// Rings that only kiss (two vias exactly their diameter apart: 16 pairs in 20_vme_wren) do not touch for KiCad.
+constexpr Nm kiss_nm = 10;
 
 /// Edges of one fill, sorted into horizontal strips: a point is then judged by the edges of its strip alone.
 class FillIndex {
@@ -118,8 +120,12 @@ class RingJudge {
     const OptionalRing& ring = reading_.optional_rings[ring_index];
     if (ring.net == board::no_net) return false;
     Box box;
-    for (const geometry::Figure& figure : ring.figures) box.add(geometry::bounds(figure));
-    const std::vector<Ring> outline = rings_of(ring.figures);
+    std::vector<geometry::Figure> figures = ring.figures;
+    for (geometry::Figure& figure : figures) {
+      box.add(geometry::bounds(figure));
+      if (figure.pen > kiss_nm) figure.pen -= kiss_nm;
+    }
+    const std::vector<Ring> outline = rings_of(figures);
     const Group& group = groups_.at({ring.copper_layer, ring.net});
     const auto behind = std::partition_point(group.by_left.begin(), group.by_left.end(),
                                              [&](const Candidate& c) { return c.box.min.x <= box.max.x; });
