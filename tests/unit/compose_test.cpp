@@ -223,6 +223,26 @@ TEST(Compose, BarrelsAreFilledAndHolesAreAir) {
   EXPECT_EQ(body_named(m, "hole L1 to L4")->priority, 3);
 }
 
+TEST(Compose, HolesThroughAllCopperGoOnThroughOuterDielectric) {
+  const Board board =
+      parse_board(R"({"pcbmesh_board": 1, "outline": {"rect": [[0, 0], [9, 5]]}, "materials": [{"name": "X"}], "stackup": [
+      {"name": "cover", "kind": "dielectric", "thickness": 0.1, "material": "X"}, {"name": "L1", "kind": "copper", "thickness": 0.1},
+      {"name": "core", "kind": "dielectric", "thickness": 0.1, "material": "X"}, {"name": "L2", "kind": "copper", "thickness": 0.1},
+      {"name": "base", "kind": "dielectric", "thickness": 0.1, "material": "X"}],
+    "holes": [{"at": [1, 1], "diameter": 1}, {"at": [3, 1], "diameter": 1, "layers": ["L1", "L1"]}], "vias": [{"at": [5, 1], "drill": 1}]})",
+                  "b.json")
+          .board;
+  const Model m = composed(board, Study{});
+  const auto column = [&](double x) {
+    std::string out;
+    for (const char* layer : {"base", "L2", "core", "L1", "cover"}) out += label_at(m, layer, x, 1).substr(0, 3) + " ";
+    return out;
+  };
+  EXPECT_EQ(column(1), "air air air air air ");
+  EXPECT_EQ(column(3), "X|n X|n X|n air air ") << "from the top copper on, the cover is drilled as well";
+  EXPECT_EQ(column(5), "X|n cop cop cop X|n ") << "the barrel ends at its copper";
+}
+
 TEST(Compose, HollowRulesLaterWin) {
   const Board board = board_with(R"("nets": ["A", "B"], "tracks": [
       {"layer": "L1", "net": "A", "width": 1, "points": [[2, 2], [8, 2]]}, {"layer": "L4", "net": "A", "width": 1, "points": [[2, 2], [8, 2]]},
@@ -350,6 +370,14 @@ TEST(Compose, CutoutsThatMeetAreUnitedAndNestedOnesCountOnce) {
   }
 }
 
+TEST(Compose, AlignedCutoutsOverlapWithoutCrossingEdges) {
+  const Model m = composed(
+      board_with("", R"({"rect": [[0, 0], [20, 10]], "cutouts": [{"rect": [[3, 3], [6, 6]]}, {"rect": [[5, 3], [8, 6]]}]})"),
+      study_without_air());
+  for (double x : {4.0, 5.5, 7.0}) EXPECT_EQ(label_at(m, "core 1", x, 4), "void") << x;
+  EXPECT_EQ(label_at(m, "core 1", 8.5, 4), "core|no net");
+}
+
 TEST(Compose, SeveralBoardsMustNotOverlap) {
   const auto two = [](const char* second) {
     return board_with("",
@@ -364,6 +392,7 @@ TEST(Compose, SeveralBoardsMustNotOverlap) {
   expect_error(two(R"({"rect": [[4, 4], [9, 9]]})"), Study{}, ErrorCode::outline_invalid, {"outlines 1 and 2 overlap"});
   expect_error(two(R"({"rect": [[0.2, 0.2], [0.8, 0.8]]})"), Study{}, ErrorCode::outline_invalid, {"overlap", "cut-out"});
   expect_error(two(R"({"rect": [[-1, -1], [9, 9]]})"), Study{}, ErrorCode::outline_invalid, {"overlap"});
+  expect_error(two(R"({"rect": [[4.5, 0], [9, 5]]})"), Study{}, ErrorCode::outline_invalid, {"overlap"});  // aligned
   expect_error(two(R"({"rect": [[0, 0], [5, 5]]})"), Study{}, ErrorCode::outline_invalid, {"overlap"});
 }
 
