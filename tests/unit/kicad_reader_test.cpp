@@ -345,8 +345,7 @@ TEST(KicadReader, DrawingsOnCopper) {
   EXPECT_EQ(old_arc.shapes()[0].figure.path.points.back(), (geometry::Point{0, -1'000'000}));
   EXPECT_NEAR(area(old_arc, 0), pi / 2 * 0.2 + pi * 0.01, 1e-3);
   const double quarter_of_circle = 0.5522847498;
-  const std::string k = std::to_string(quarter_of_circle), m = std::to_string(1 - quarter_of_circle);
-  (void)m;
+  const std::string k = std::to_string(quarter_of_circle);
   EXPECT_NEAR(of("(gr_curve (pts (xy 1 0) (xy 1 " + k + ") (xy " + k + " 1) (xy 0 1)) (stroke (width 0.2)) (layer \"F.Cu\"))"),
               pi / 2 * 0.2 + pi * 0.01, 1e-3);
   const auto turned = read(
@@ -354,6 +353,27 @@ TEST(KicadReader, DrawingsOnCopper) {
                           "(layer \"F.Cu\")))")
                           .board;
   EXPECT_EQ(turned.shapes()[0].figure.path.points, (geometry::Ring{{10'000'000, -5'000'000}, {10'000'000, -3'000'000}}));
+}
+
+TEST(KicadReader, DrawingsAdoptTheNetTheyTouch) {
+  const std::string track = "(segment (start 0 0) (end 1 0) (width 0.2) (layer \"F.Cu\") (net 1))";
+  const std::string chain =
+      "(gr_line (start 5 0) (end 9 0) (stroke (width 0.2)) (layer \"F.Cu\"))"
+      "(gr_rect (start 0.5 -1) (end 5 1) (stroke (width 0)) (fill yes) (layer \"F.Cu\"))";
+  const auto adopted = read(track + chain).board;
+  EXPECT_EQ(adopted.shapes()[1].net, 0);
+  EXPECT_EQ(adopted.shapes()[2].net, 0);
+  const auto apart = read(track + "(gr_line (start 1.2 0) (end 9 0) (stroke (width 0.2)) (layer \"F.Cu\"))").board;
+  EXPECT_EQ(apart.shapes()[1].net, board::no_net);
+  const auto shorted = read(track + chain + "(segment (start 9 0) (end 9 1) (width 0.2) (layer \"F.Cu\") (net 2))");
+  EXPECT_EQ(shorted.board.shapes()[1].net, board::no_net);
+  EXPECT_EQ(shorted.diagnostics.count("kicad.drawing_joins_nets"), 2);
+  const auto tie =
+      read(
+          track +
+          "(footprint \"tie\" (layer \"F.Cu\") (at 0 0) (fp_line (start 0 0) (end 5 0) (stroke (width 0.2)) (layer \"F.Cu\")))")
+          .board;
+  EXPECT_EQ(tie.shapes()[1].net, board::no_net);
 }
 
 TEST(KicadReader, CountsTextOnCopper) {
