@@ -11,6 +11,9 @@
 namespace pcbmesh::formats::kicad {
 namespace {
 
+/// A drawing of a million overlapping strokes must not hang the reader.
+constexpr std::size_t most_tests = 5'000'000;
+
 /// Clusters of touching drawings, by the smallest drawing in each.
 class Clusters {
  public:
@@ -53,12 +56,18 @@ void adopt_nets(Reading& reading) {
   TouchTest test;
   Clusters clusters(drawings.size());
   std::vector<std::set<std::int32_t>> nets(drawings.size());
-  for (std::size_t k = 0; k < drawings.size(); ++k) {
+  std::size_t num_tests = 0;
+  for (std::size_t k = 0; k < drawings.size() && num_tests <= most_tests; ++k) {
     const board::Shape& drawing = shapes[drawings[k]];
     const Probe probe({&drawing.figure, 1});
     layers.at(drawing.copper_layer).any(probe.box, [&](std::size_t index) {
       const board::Shape& other = shapes[index];
-      if (other.net == board::no_net ? rank.at(index) >= k : nets[k].contains(other.net)) return false;
+      if (other.net == board::no_net) {
+        if (rank.at(index) >= k || clusters.root(rank.at(index)) == clusters.root(k)) return false;
+      } else if (nets[k].contains(other.net)) {
+        return false;
+      }
+      if (++num_tests > most_tests) return true;
       const bool is_fill = other.kind == board::ShapeKind::fill;
       if (!(is_fill ? test.touches_fill(probe, index, other.figure) : TouchTest::touches(probe, {&other.figure, 1})))
         return false;
@@ -68,6 +77,11 @@ void adopt_nets(Reading& reading) {
         nets[k].insert(other.net);
       return false;
     });
+  }
+  if (num_tests > most_tests) {
+    reading.diagnostics.warn("kicad.drawings_too_many", "too many drawings without a net overlap on copper; they keep no net",
+                             {.file = reading.tree.file()});
+    return;
   }
   for (std::size_t k = drawings.size(); k-- > 0;)
     if (clusters.root(k) != k) nets[clusters.root(k)].merge(nets[k]);

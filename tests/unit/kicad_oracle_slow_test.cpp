@@ -16,7 +16,7 @@
 #include "formats/kicad/format.hpp"
 #include "formats/syntax/input_file.hpp"
 #include "test_data.hpp"
-#include "union_area.hpp"
+#include "unit/union_area.hpp"
 
 namespace {
 
