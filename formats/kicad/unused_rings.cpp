@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <span>
 #include <utility>
 
 namespace pcbmesh::formats::kicad {
@@ -14,7 +15,9 @@ using geometry::Box;
 using geometry::Point;
 using geometry::Ring;
 
-constexpr geometry::ArcOptions coarse{};
+constexpr geometry::ArcOptions coarse{.sagitta_nm = nm_per_um};
+// Rings that only kiss (two vias exactly their diameter apart: 16 pairs in 20_vme_wren) do not touch for KiCad.
+constexpr Nm kiss_nm = 10;
 
 /// Edges of one fill, sorted into horizontal strips: a point is then judged by the edges of its strip alone.
 class FillIndex {
@@ -81,7 +84,7 @@ bool edges_cross(const std::vector<Ring>& first, const std::vector<Ring>& second
 
 struct Candidate {
   Box box;
-  std::size_t shape = 0;
+  std::size_t index = 0;  ///< shape, or num_shapes + optional ring
 };
 
 /// Shapes of one net on one layer, by the left side of their boxes.
@@ -92,60 +95,78 @@ struct Group {
 
 class RingJudge {
  public:
-  explicit RingJudge(Reading& reading) : reading_(reading) {
-    for (const OptionalRing& ring : reading.optional_rings) groups_[{ring.copper_layer, ring.net}];
-    for (std::size_t i = 0; i < reading.parts.shapes.size(); ++i) {
+  explicit RingJudge(Reading& reading) : reading_(reading), num_shapes_(reading.parts.shapes.size()) {
+    for (std::size_t i = 0; i < reading.optional_rings.size(); ++i) {
+      const OptionalRing& ring = reading.optional_rings[i];
+      Box box;
+      for (const geometry::Figure& figure : ring.figures) box.add(geometry::bounds(figure));
+      groups_[{ring.copper_layer, ring.net}].by_left.push_back({box, num_shapes_ + i});
+    }
+    for (std::size_t i = 0; i < num_shapes_; ++i) {
       const board::Shape& shape = reading.parts.shapes[i];
       const auto group = groups_.find({shape.copper_layer, shape.net});
       if (group != groups_.end()) group->second.by_left.push_back({geometry::bounds(shape.figure), i});
     }
     for (auto& [key, group] : groups_) {
       std::sort(group.by_left.begin(), group.by_left.end(), [](const Candidate& a, const Candidate& b) {
-        return std::pair(a.box.min.x, a.shape) < std::pair(b.box.min.x, b.shape);
+        return std::pair(a.box.min.x, a.index) < std::pair(b.box.min.x, b.index);
       });
       for (const Candidate& c : group.by_left)
         group.right_most.push_back(group.right_most.empty() ? c.box.max.x : std::max(group.right_most.back(), c.box.max.x));
     }
   }
 
-  bool is_used(const OptionalRing& ring) {
+  bool is_used(std::size_t ring_index) {
+    const OptionalRing& ring = reading_.optional_rings[ring_index];
     if (ring.net == board::no_net) return false;
     Box box;
-    std::vector<Ring> outline;
-    bool simple = true;
-    for (const geometry::Figure& figure : ring.figures) {
+    std::vector<geometry::Figure> figures = ring.figures;
+    for (geometry::Figure& figure : figures) {
       box.add(geometry::bounds(figure));
-      for (Ring& r : geometry::outline(figure, coarse, simple)) outline.push_back(std::move(r));
+      if (figure.pen > kiss_nm) figure.pen -= kiss_nm;
     }
+    const std::vector<Ring> outline = rings_of(figures);
     const Group& group = groups_.at({ring.copper_layer, ring.net});
     const auto behind = std::partition_point(group.by_left.begin(), group.by_left.end(),
                                              [&](const Candidate& c) { return c.box.min.x <= box.max.x; });
-    for (auto i = static_cast<std::size_t>(behind - group.by_left.begin()); i-- > 0 && group.right_most[i] >= box.min.x;)
-      if (group.by_left[i].box.touches(box) && touches(ring, outline, group.by_left[i].shape)) return true;
+    for (auto i = static_cast<std::size_t>(behind - group.by_left.begin()); i-- > 0 && group.right_most[i] >= box.min.x;) {
+      const Candidate& c = group.by_left[i];
+      if (c.index != num_shapes_ + ring_index && c.box.touches(box) && touches(ring, outline, c.index)) return true;
+    }
     return false;
   }
 
  private:
-  bool touches(const OptionalRing& ring, const std::vector<Ring>& outline, std::size_t index) {
-    const board::Shape& shape = reading_.parts.shapes[index];
-    if (shape.kind == board::ShapeKind::fill) {
-      if (!ring.fills_count) return false;
-      auto& fill = fills_[index];
-      if (!fill) fill = std::make_unique<FillIndex>(shape.figure);
-      for (const Ring& r : outline)
-        if (std::any_of(r.begin(), r.end(), [&](Point p) { return fill->contains(p); })) return true;
-      return false;
-    }
+  static std::vector<Ring> rings_of(std::span<const geometry::Figure> figures) {
+    std::vector<Ring> rings;
     bool simple = true;
-    const std::vector<Ring> other = geometry::outline(shape.figure, coarse, simple);
-    for (const Ring& r : other)
-      if (is_in(outline, r.front())) return true;
+    for (const geometry::Figure& figure : figures)
+      for (Ring& ring : geometry::outline(figure, coarse, simple)) rings.push_back(std::move(ring));
+    return rings;
+  }
+
+  bool touches(const OptionalRing& ring, const std::vector<Ring>& outline, std::size_t index) {
+    if (index >= num_shapes_) return touches(outline, rings_of(reading_.optional_rings[index - num_shapes_].figures));
+    const board::Shape& shape = reading_.parts.shapes[index];
+    if (shape.kind != board::ShapeKind::fill) return touches(outline, rings_of({&shape.figure, 1}));
+    if (!ring.fills_count) return false;
+    auto& fill = fills_[index];
+    if (!fill) fill = std::make_unique<FillIndex>(shape.figure);
     for (const Ring& r : outline)
-      if (is_in(other, r.front())) return true;
-    return edges_cross(outline, other);
+      if (std::any_of(r.begin(), r.end(), [&](Point p) { return fill->contains(p); })) return true;
+    return false;
+  }
+
+  static bool touches(const std::vector<Ring>& first, const std::vector<Ring>& second) {
+    for (const Ring& r : second)
+      if (is_in(first, r.front())) return true;
+    for (const Ring& r : first)
+      if (is_in(second, r.front())) return true;
+    return edges_cross(first, second);
   }
 
   Reading& reading_;
+  std::size_t num_shapes_;
   std::map<std::pair<std::int32_t, std::int32_t>, Group> groups_;
   std::map<std::size_t, std::unique_ptr<FillIndex>> fills_;
 };
@@ -155,9 +176,12 @@ class RingJudge {
 void add_used_rings(Reading& reading) {
   if (reading.optional_rings.empty()) return;
   RingJudge judge(reading);
+  std::vector<bool> is_used(reading.optional_rings.size());
+  for (std::size_t i = 0; i < is_used.size(); ++i) is_used[i] = judge.is_used(i);
   std::vector<board::Shape> used;
-  for (OptionalRing& ring : reading.optional_rings) {
-    if (!judge.is_used(ring)) continue;
+  for (std::size_t i = 0; i < is_used.size(); ++i) {
+    if (!is_used[i]) continue;
+    OptionalRing& ring = reading.optional_rings[i];
     for (geometry::Figure& figure : ring.figures)
       if (figure.pen > 0 || figure.filled)
         used.push_back({ring.copper_layer, ring.net, ring.kind, std::move(figure), ring.line});

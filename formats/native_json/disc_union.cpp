@@ -143,8 +143,8 @@ std::vector<DiscCluster> unite(const std::vector<Disc>& discs) {
     std::erase_if(active, [&](std::size_t k) { return discs[k].centre.x + discs[k].radius < left(i); });
     for (std::size_t k : active)
       if (distance(discs[i], discs[k]) < static_cast<double>(discs[i].radius + discs[k].radius)) {
-        const auto [low, high] = std::minmax(root(i), root(k));
-        parent[high] = low;
+        const std::size_t a = root(i), b = root(k);
+        parent[std::max(a, b)] = std::min(a, b);
       }
     active.push_back(i);
   }
