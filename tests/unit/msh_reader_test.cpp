@@ -256,7 +256,7 @@ TEST(MshReader, SaysWhatIsWrongAndWhere) {
            {head_22 + "$Nodes\n1\n1 0 zero 0\n$EndNodes\n", "'zero'", 6},
            {head_22 + "$Nodes\n2\n1 0 0 0\n1 0 0 0\n$EndNodes\n", "node number 1 is given twice", 0},
            {head_22 + "$Nodes\n1\n0 0 0 0\n$EndNodes\n", "not positive", 0},
-           {head_22 + "$Nodes\n2\n1 0 0 0\n$EndNodes\n", "2 nodes", 0},
+           {head_22 + "$Nodes\n2\n1 0 0 0\n$EndNodes\n", "'$EndNodes' is no", 0},
            {head_22 + "$Nodes\n1\n1 0 0 0\n2 0 0 0\n$EndNodes\n", "$EndNodes was expected", 0},
            {head_22 + "$Nodes\n-1\n", "-1 nodes", 0},
            {elements("1 2 2 1 1 1 2 4"), "node 4", 12},
