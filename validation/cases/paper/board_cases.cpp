@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pcbmesh/base/diagnostics.hpp"
+#include "pcbmesh/base/running_sum.hpp"
+#include "pcbmesh/compose/compose.hpp"
+#include "pcbmesh/extrude/extrude.hpp"
+#include "pcbmesh/formats/registry.hpp"
+#include "pcbmesh/layering/choose_layers.hpp"
+#include "pcbmesh/layering/prism_quality.hpp"
+#include "pcbmesh/overlay/overlay.hpp"
+#include "pcbmesh/triangulate/triangulate.hpp"
+#include "validation/cases/paper/measure.hpp"
+
+namespace pcbmesh::validation::paper {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using study::HeightPolicy;
+using study::SublayerRule;
+
+constexpr double longest_edge_m = 2e-3;  // the paper's first bound
+constexpr std::array policies{HeightPolicy::basic, HeightPolicy::average, HeightPolicy::maximum, HeightPolicy::minimum,
+                              HeightPolicy::thinnest_layer};
+constexpr std::array rules{SublayerRule::floor, SublayerRule::round, SublayerRule::ceil, SublayerRule::none,
+                           SublayerRule::optimal};
+
+/// The paper's world: the board alone, nothing simplified (a tenth of a micrometre moves no octagon).
+study::Study study_of_paper() {
+  study::Study study;
+  study.air_above = study.air_below = 0;
+  study.tolerance = 100;
+  study.longest_edge = 2 * nm_per_mm;
+  return study;
+}
+
+/// Sums over prisms of equal base: one per triangle and sub-layer height.
+struct PrismMean {
+  RunningSum quality, weighted, volume;
+  std::int64_t num_prisms = 0;
+  void add(double area, double beta, double height) {
+    const double q = height > 0 ? layering::prism_quality(area, beta, height) : 0.0;
+    quality.add(q);
+    weighted.add(q * area * height);
+    volume.add(area * height);
+    ++num_prisms;
+  }
+};
+
+Json compat_json(const mesh::PlanarMesh& planar, const CompatLayers& compat, bool is_first_case) {
+  std::vector<double> heights;
+  for (std::size_t i = 0; i < compat.heights_m.size(); ++i) {
+    const int count = is_first_case ? compat.first_counts[i] : 1;
+    heights.insert(heights.end(), static_cast<std::size_t>(count), compat.heights_m[i] / count);
+  }
+  PrismMean mean;
+  for (std::int32_t t = 0; t < planar.num_triangles(); ++t) {
+    const auto squared = planar.squared_edges_m2(t);
+    for (const double height : heights) mean.add(planar.area_m2(t), squared[0] + squared[1] + squared[2], height);
+  }
+  return {{"sublayers", heights.size()},
+          {"prisms", mean.num_prisms},
+          {"mean_prism", mean.quality.total() / static_cast<double>(mean.num_prisms)},
+          {"volume_weighted_prism", mean.weighted.total() / mean.volume.total()}};
+}
+
+/// The product's own way: layers cut, extruded, measured.
+Json clean_json(const mesh::PlanarMesh& planar, const model::Model& model, const overlay::OverlayResult& graph,
+                SublayerRule rule, double common_height, const layering::HeightStatistics& heights) {
+  const mesh::LayerPlan plan = layering::choose_layers(model.slabs(), rule, common_height, heights);
+  const mesh::PrismMesh prisms = extrude::extrude(planar, plan, model, graph.net_pieces, graph.touching_nets);
+  const layering::QualityStatistics quality = layering::quality_statistics(prisms);
+  double volume = 0;
+  for (const mesh::VolumeTag& tag : prisms.volume_tags()) volume += tag.volume_m3;
+  return {{"sublayers", plan.num_sublayers()},
+          {"prisms", prisms.num_prisms()},
+          {"mean_prism", quality.mean_prism},
+          {"volume_weighted_prism", quality.volume_weighted_prism},
+          {"min_prism", quality.min_prism},
+          {"quantile1_prism", quality.quantile1_prism},
+          {"volume_m3", volume}};
+}
+
+Json heights_json(const layering::HeightStatistics& heights, std::int32_t num_triangles) {
+  return {{"min_m", heights.minimum},
+          {"avg_m", heights.average},
+          {"max_m", heights.maximum},
+          {"share_below_average", static_cast<double>(heights.num_below_average) / num_triangles}};
+}
+
+Json all_heights_json(const mesh::PlanarMesh& planar) {
+  Json out = Json::array();
+  for (std::int32_t t = 0; t < planar.num_triangles(); ++t) {
+    const auto squared = planar.squared_edges_m2(t);
+    out.push_back(layering::optimal_height(squared[0] + squared[1] + squared[2]));
+  }
+  return out;
+}
+
+/// Everything about the planar mesh of one case that the paper prints, and the smallest angle.
+Json planar_json(const mesh::PlanarMesh& planar, const triangulate::TriangulateStatistics& statistics) {
+  const layering::HeightStatistics heights = layering::height_statistics(planar);
+  double longest2 = 0, area = 0;
+  for (std::int32_t t = 0; t < planar.num_triangles(); ++t) {
+    const auto squared = planar.squared_edges_m2(t);
+    longest2 = std::max({longest2, squared[0], squared[1], squared[2]});
+    area += planar.area_m2(t);
+  }
+  return {{"triangles", planar.num_triangles()},
+          {"mean_triangle", heights.mean_triangle_quality},
+          {"heights", heights_json(heights, planar.num_triangles())},
+          {"longest_edge_m", std::sqrt(longest2)},
+          {"area_m2", area},
+          {"min_angle_deg", statistics.min_angle_deg}};
+}
+
+}  // namespace
+
+Json measure_cases(const std::filesystem::path& board_file, const CompatLayers& compat) {
+  Diagnostics diagnostics;
+  const study::Study study = study_of_paper();
+  const model::Model model = compose::compose(formats::read_board(board_file).board, study, diagnostics);
+  overlay::OverlayOptions overlay_options;
+  overlay_options.tolerance_nm = study.tolerance;
+  const overlay::OverlayResult graph = overlay::overlay(model, overlay_options, diagnostics);
+  triangulate::TriangulateOptions options;
+  options.as_in_paper = true;
+  options.longest_edge_nm = longest_edge_m / metres_per_nm;
+  const auto triangulated = [&] { return triangulate::triangulate(graph.graph, model, options, diagnostics); };
+  const triangulate::TriangulateResult first = triangulated();
+  const layering::HeightStatistics first_heights = layering::height_statistics(first.mesh);
+
+  Json cases = Json::array();
+  for (std::size_t i = 0; i < policies.size(); ++i) {
+    const double height = *layering::common_height_m(policies[i], first_heights, model.slabs());
+    const std::optional<double> feedback = layering::feedback_edge_m(policies[i], height, longest_edge_m);
+    std::optional<triangulate::TriangulateResult> second;
+    if (feedback) {
+      options.longest_edge_nm = *feedback / metres_per_nm;
+      second = triangulated();
+    }
+    const triangulate::TriangulateResult& final_result = second ? *second : first;
+    const layering::HeightStatistics heights = layering::height_statistics(final_result.mesh);
+    Json row = planar_json(final_result.mesh, final_result.statistics);
+    row["case"] = i + 1;
+    row["common_height_m"] = height;
+    row["longest_edge_bound_m"] = feedback.value_or(longest_edge_m);
+    row["compat"] = compat_json(final_result.mesh, compat, policies[i] == HeightPolicy::basic);
+    for (const SublayerRule rule : rules)
+      row["clean"][std::string(study::name_of(rule))] = clean_json(final_result.mesh, model, graph, rule, height, heights);
+    cases.push_back(std::move(row));
+  }
+  double stack_m = 0;
+  for (const model::Slab& slab : model.slabs())
+    stack_m += static_cast<double>(slab.z_top_nm - slab.z_bottom_nm) * metres_per_nm;
+  return {{"board", board_file.filename().string()},
+          {"stack_m", stack_m},
+          {"initial_heights_m", all_heights_json(first.mesh)},
+          {"cases", cases}};
+}
+
+}  // namespace pcbmesh::validation::paper
