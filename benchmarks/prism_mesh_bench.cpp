@@ -38,7 +38,8 @@ model::Model bench_model(Voids voids) {
   parts.materials = {{"FR4"}, {"copper"}};
   parts.nets = {"GND"};
   for (Nm s = 0; s < 10; ++s) {
-    parts.slabs.push_back({std::string(1, static_cast<char>('A' + s)), model::SlabKind::dielectric, s * 100'000, (s + 1) * 100'000, 0, -1});
+    parts.slabs.push_back(
+        {std::string(1, static_cast<char>('A' + s)), model::SlabKind::dielectric, s * 100'000, (s + 1) * 100'000, 0, -1});
   }
   parts.bodies = {{"domain", model::BodyKind::domain, -1, board::no_net, 0, 9},
                   {"board", model::BodyKind::board, -1, board::no_net, 0, 9},

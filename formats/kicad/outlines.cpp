@@ -16,7 +16,7 @@ namespace {
 using geometry::Path;
 using geometry::Point;
 
-constexpr double joined_nm = 1000, widest_gap_nm = 5000;
+constexpr double joined_nm = 1000, widest_gap_nm = 10000;
 
 double distance(Point a, Point b) {
   return std::hypot(static_cast<double>(a.x - b.x), static_cast<double>(a.y - b.y));

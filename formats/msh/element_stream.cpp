@@ -10,8 +10,6 @@
 namespace pcbmesh::formats::msh {
 namespace {
 
-constexpr std::size_t cache_budget_bytes = std::size_t{32} << 20;
-
 std::size_t index(std::int32_t i) {
   return static_cast<std::size_t>(i);
 }
@@ -68,12 +66,12 @@ class ElementStream::Rows {
   std::int64_t total_ = 0;
 };
 
-ElementStream::ElementStream(const mesh::PrismMesh& mesh) : mesh_(mesh) {
+ElementStream::ElementStream(const mesh::PrismMesh& mesh, std::size_t cache_bytes) : mesh_(mesh) {
   survey_faces();
   survey_volumes();
   for (const ElementBlock& block : blocks_) num_elements_ += block.count;
   const auto triangles = static_cast<std::size_t>(mesh.planar().num_triangles());
-  max_cached_ = std::max<std::size_t>(2, cache_budget_bytes / (sizeof(std::int32_t) * std::max<std::size_t>(triangles, 1)));
+  max_cached_ = std::max<std::size_t>(2, cache_bytes / (sizeof(std::int32_t) * std::max<std::size_t>(triangles, 1)));
 }
 
 void ElementStream::survey_faces() {

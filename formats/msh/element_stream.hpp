@@ -45,10 +45,10 @@ struct Group {
 /// Boundary faces, then prisms of an implicit mesh, block by block in file order; never holds the 3D mesh.
 /// Faces are oriented outwards, seen from the meshed side.
 ///
-/// @cost memory O(regions x tags in use) + at most max(32 MiB, two slabs' triangle lists).
+/// @cost memory O(regions x slabs) + triangle lists of slabs: at most `cache_bytes`, but always room for two.
 class ElementStream {
  public:
-  explicit ElementStream(const mesh::PrismMesh& mesh);
+  explicit ElementStream(const mesh::PrismMesh& mesh, std::size_t cache_bytes = std::size_t{32} << 20);
 
   [[nodiscard]] const mesh::PrismMesh& mesh() const { return mesh_; }
   /// Faces by tag (triangles before quadrangles), then volumes by tag; empty blocks are left out.

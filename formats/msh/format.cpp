@@ -21,6 +21,7 @@ void write(const mesh::PrismMesh& mesh, const std::filesystem::path& file, const
     throw Error(ErrorCode::usage, fmt::format("there is no MSH version '{}'; use 4.1 or 2.2", options.version),
                 {.file = file.string()});
   ElementStream elements(mesh);
+  if (!is_41) require_fits_22(elements, file);
   FileSink sink(file, (is_41 ? expected_bytes_41 : expected_bytes_22)(elements, options.binary));
   (is_41 ? write_41 : write_22)({elements, sink, options.binary, 1.0 / metres_per(options.unit), progress});
   progress.check();

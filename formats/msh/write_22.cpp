@@ -11,13 +11,13 @@ namespace {
 
 constexpr std::int64_t most = std::numeric_limits<std::int32_t>::max();
 
-void require_32_bit(const WriteJob& job, std::int64_t count, std::string_view what) {
+void require_32_bit(std::int64_t count, std::string_view what, const std::filesystem::path& file) {
   if (count <= most) return;
   throw Error(
       ErrorCode::format_limit,
       fmt::format("MSH 2.2 numbers {} with 32 bits, at most {}, and this mesh has {}; write version 4.1 or a coarser mesh",
                   what, most, count),
-      {.file = job.sink.target().string()});
+      {.file = file.string()});
 }
 
 void write_nodes(const WriteJob& job, Meter& meter) {
@@ -53,18 +53,29 @@ void write_nodes(const WriteJob& job, Meter& meter) {
   sink.put(job.binary ? "\n$EndNodes\n" : "$EndNodes\n");
 }
 
-void write_rows_binary(FileSink& sink, const ElementBlock& block, std::int64_t id, std::span<const std::int64_t> corners) {
-  const auto width = static_cast<std::size_t>(num_corners(block.kind));
-  const std::size_t num_rows = corners.size() / width, row_bytes = (3 + width) * sizeof id;
-  char* to = sink.room(num_rows * row_bytes);
-  std::array<std::int32_t, 9> fields{0, block.tag, block.tag};
+template <std::size_t width>
+void write_rows_of(FileSink& sink, std::int32_t tag, std::int64_t id, std::span<const std::int64_t> corners) {
+  std::array<std::int32_t, 3 + width> fields{0, tag, tag};
+  const std::size_t num_rows = corners.size() / width;
+  char* to = sink.room(num_rows * sizeof fields);
   for (std::size_t row = 0; row < num_rows; ++row) {
     fields[0] = static_cast<std::int32_t>(id++);
     for (std::size_t i = 0; i < width; ++i) fields[3 + i] = static_cast<std::int32_t>(corners[row * width + i] + 1);
-    std::memcpy(to, fields.data(), row_bytes);
-    to += row_bytes;
+    std::memcpy(to, fields.data(), sizeof fields);
+    to += sizeof fields;
   }
-  sink.advance(num_rows * row_bytes);
+  sink.advance(num_rows * sizeof fields);
+}
+
+void write_rows_binary(FileSink& sink, const ElementBlock& block, std::int64_t id, std::span<const std::int64_t> corners) {
+  switch (block.kind) {
+    case ElementKind::triangle:
+      return write_rows_of<3>(sink, block.tag, id, corners);
+    case ElementKind::quadrangle:
+      return write_rows_of<4>(sink, block.tag, id, corners);
+    case ElementKind::wedge:
+      return write_rows_of<6>(sink, block.tag, id, corners);
+  }
 }
 
 void write_rows_text(FileSink& sink, const ElementBlock& block, std::int64_t id, std::span<const std::int64_t> corners) {
@@ -103,6 +114,11 @@ void write_elements(const WriteJob& job, Meter& meter) {
 
 }  // namespace
 
+void require_fits_22(const ElementStream& elements, const std::filesystem::path& file) {
+  require_32_bit(elements.mesh().num_nodes(), "nodes", file);
+  require_32_bit(elements.num_elements(), "elements", file);
+}
+
 std::uint64_t expected_bytes_22(const ElementStream& elements, bool binary) {
   if (!binary) return 0;
   std::uint64_t bytes = static_cast<std::uint64_t>(elements.mesh().num_nodes()) * 28;
@@ -112,8 +128,6 @@ std::uint64_t expected_bytes_22(const ElementStream& elements, bool binary) {
 }
 
 void write_22(const WriteJob& job) {
-  require_32_bit(job, job.elements.mesh().num_nodes(), "nodes");
-  require_32_bit(job, job.elements.num_elements(), "elements");
   Meter meter(job.progress, job.elements.mesh().num_nodes() + job.elements.num_elements());
   write_opening(job, "2.2");
   write_nodes(job, meter);

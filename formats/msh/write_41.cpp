@@ -99,28 +99,40 @@ void write_nodes(const WriteJob& job, Meter& meter) {
 }
 
 /// One element per row: its tag, then its nodes' tags, counted from 1.
-void write_rows(const WriteJob& job, std::size_t width, std::int64_t first_tag, std::span<const std::int64_t> corners) {
-  std::int64_t tag = first_tag;
-  if (job.binary) {
-    const std::size_t num_rows = corners.size() / width, size = num_rows * (width + 1) * sizeof tag;
-    char* to = job.sink.room(size);
-    for (std::size_t row = 0; row < num_rows; ++row, ++tag) {
-      std::array<std::int64_t, 7> fields;
-      fields[0] = tag;
-      for (std::size_t i = 0; i < width; ++i) fields[i + 1] = corners[row * width + i] + 1;
-      std::memcpy(to, fields.data(), (width + 1) * sizeof tag);
-      to += (width + 1) * sizeof tag;
-    }
-    job.sink.advance(size);
-    return;
+template <std::size_t width>
+void write_rows_binary(FileSink& sink, std::int64_t tag, std::span<const std::int64_t> corners) {
+  std::array<std::int64_t, 1 + width> fields;
+  const std::size_t num_rows = corners.size() / width;
+  char* to = sink.room(num_rows * sizeof fields);
+  for (std::size_t row = 0; row < num_rows; ++row) {
+    fields[0] = tag++;
+    for (std::size_t i = 0; i < width; ++i) fields[1 + i] = corners[row * width + i] + 1;
+    std::memcpy(to, fields.data(), sizeof fields);
+    to += sizeof fields;
   }
+  sink.advance(num_rows * sizeof fields);
+}
+
+void write_rows_text(FileSink& sink, std::size_t width, std::int64_t tag, std::span<const std::int64_t> corners) {
   for (std::size_t at = 0; at < corners.size(); at += width, ++tag) {
-    job.sink.put_number(tag);
+    sink.put_number(tag);
     for (std::size_t i = 0; i < width; ++i) {
-      job.sink.put(" ");
-      job.sink.put_number(corners[at + i] + 1);
+      sink.put(" ");
+      sink.put_number(corners[at + i] + 1);
     }
-    job.sink.put("\n");
+    sink.put("\n");
+  }
+}
+
+void write_rows(const WriteJob& job, ElementKind kind, std::int64_t tag, std::span<const std::int64_t> corners) {
+  if (!job.binary) return write_rows_text(job.sink, static_cast<std::size_t>(num_corners(kind)), tag, corners);
+  switch (kind) {
+    case ElementKind::triangle:
+      return write_rows_binary<3>(job.sink, tag, corners);
+    case ElementKind::quadrangle:
+      return write_rows_binary<4>(job.sink, tag, corners);
+    case ElementKind::wedge:
+      return write_rows_binary<6>(job.sink, tag, corners);
   }
 }
 
@@ -141,7 +153,7 @@ void write_elements(const WriteJob& job, Meter& meter) {
     out.end_line();
     const auto width = static_cast<std::size_t>(num_corners(block.kind));
     job.elements.visit(block, [&](std::span<const std::int64_t> corners) {
-      write_rows(job, width, tag, corners);
+      write_rows(job, block.kind, tag, corners);
       const auto count = static_cast<std::int64_t>(corners.size() / width);
       tag += count;
       meter.add(count);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <span>
 #include <string>
@@ -30,8 +31,11 @@ struct WriteJob {
 void write_41(const WriteJob& job);
 
 /// MSH 2.2: tags (physical, elementary = physical); binary blocks have one header for all elements of a tag.
-/// @throws Error format_limit (703) beyond 2^31 - 1 nodes or elements, before anything is written.
+/// REQUIRES require_fits_22().
 void write_22(const WriteJob& job);
+
+/// @throws Error format_limit (703) beyond 2^31 - 1 nodes or elements.
+void require_fits_22(const ElementStream& elements, const std::filesystem::path& file);
 
 /// Size of the file in bytes but for its few kB of headers; 0 for text, whose size nobody knows before.
 [[nodiscard]] std::uint64_t expected_bytes_41(const ElementStream& elements, bool binary);

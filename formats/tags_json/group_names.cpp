@@ -62,8 +62,9 @@ std::vector<std::string> group_names(std::span<const std::string> names) {
     if (is_kept[i] || (out[i].size() <= max_name_bytes && taken.insert(out[i]).second)) continue;
     const std::string full = out[i];
     for (std::size_t number = i + 1;; number += names.size()) {
-      const std::string ending = "~" + std::to_string(number);
-      out[i] = std::string(cut(full, max_name_bytes - ending.size())) + ending;
+      const std::string digits = std::to_string(number);
+      out[i] = cut(full, max_name_bytes - digits.size() - 1);
+      out[i].append(1, '~').append(digits);
       if (taken.insert(out[i]).second) break;
     }
   }

@@ -169,11 +169,6 @@ void Writer::write() {
 
 void write(const mesh::PrismMesh& mesh, const std::filesystem::path& file, const WriteMeshOptions& options,
            const Progress& progress) {
-  if (!options.binary)
-    throw Error(ErrorCode::usage, "VTU is written in binary only; write MSH if you need text", {.file = file.string()});
-  if (!options.version.empty() && options.version != "1.0" && options.version != "1")
-    throw Error(ErrorCode::usage, fmt::format("there is no VTU version '{}' here; use 1.0", options.version),
-                {.file = file.string()});
   const Array last = arrays_of(mesh.num_nodes(), mesh.num_prisms()).back();
   FileSink sink(file, static_cast<std::uint64_t>(last.offset + last.num_bytes));
   Writer(mesh, sink, 1.0 / metres_per(options.unit), progress).write();

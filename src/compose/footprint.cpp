@@ -102,26 +102,38 @@ void sort_cutouts(const Board& board, const Study& study, const board::Outline& 
   }
 }
 
+/// Whether two rings have area in common. Aligned rectangles overlap without any edge crossing another, hence the middles.
+bool overlap(const Ring& a, const Ring& b) {
+  const geometry::Contact met = geometry::contact(a, b);
+  if (met.kind == ContactKind::crossing || geometry::is_inside(a, b) || geometry::is_inside(b, a)) return true;
+  if (met.kind == ContactKind::none) return false;
+  const auto reaches_into = [](const Ring& ring, const Ring& other) {
+    for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
+      const Point middle{(ring[i].x + ring[j].x) / 2, (ring[i].y + ring[j].y) / 2};
+      if (geometry::location(ring[i], other) > 0 || geometry::location(middle, other) > 0) return true;
+    }
+    return false;
+  };
+  return reaches_into(a, b) || reaches_into(b, a);
+}
+
 void require_apart(const Board& board, const std::vector<BoardRings>& boards) {
+  const auto in_cutout = [](const Ring& inner, const BoardRings& frame) {
+    return std::any_of(frame.cutouts.begin(), frame.cutouts.end(), [&](const Ring& cutout) {
+      return geometry::contact(inner, cutout).kind != ContactKind::crossing && geometry::is_inside(inner, cutout);
+    });
+  };
   for (std::size_t i = 0; i < boards.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
       const Ring &a = boards[i].outer, &b = boards[j].outer;
-      if (!geometry::bounds(a).touches(geometry::bounds(b))) continue;
-      const geometry::Contact met = geometry::contact(a, b);
-      const auto in_cutout = [](const Ring& inner, const BoardRings& frame) {
-        return std::any_of(frame.cutouts.begin(), frame.cutouts.end(),
-                           [&](const Ring& cutout) { return geometry::is_inside(inner, cutout); });
-      };
-      const bool nested = met.kind != ContactKind::crossing && ((geometry::is_inside(a, b) && !in_cutout(a, boards[j])) ||
-                                                                (geometry::is_inside(b, a) && !in_cutout(b, boards[i])));
-      if (met.kind != ContactKind::crossing && !nested) continue;
+      if (!geometry::bounds(a).touches(geometry::bounds(b)) || !overlap(a, b)) continue;
+      if (in_cutout(a, boards[j]) || in_cutout(b, boards[i])) continue;
       throw Error(
           ErrorCode::outline_invalid,
           fmt::format("board outlines {} and {} overlap; an outline inside another is a cut-out: mend the outline in the "
                       "layout program",
                       j + 1, i + 1),
-          {.file = board.source(), .at_mm = mm(nested ? a.front() : met.at)},
-          {static_cast<std::int64_t>(j), static_cast<std::int64_t>(i)});
+          {.file = board.source(), .at_mm = mm(a.front())}, {static_cast<std::int64_t>(j), static_cast<std::int64_t>(i)});
     }
 }
 

@@ -333,7 +333,8 @@ TEST(Extrude, RandomModelsGiveTheMeshSpeltOut) {
 TEST(Extrude, E2_FaceTagsAreOuterOrConductor) {
   for (unsigned seed = 0; seed < 60; ++seed) {
     SCOPED_TRACE(seed);
-    for (const auto& tag : random_mesh(seed).face_tags()) {
+    const PrismMesh mesh = random_mesh(seed);
+    for (const auto& tag : mesh.face_tags()) {
       EXPECT_EQ(tag.name.starts_with("surface|"), tag.kind == FaceTagKind::conductor);
       EXPECT_TRUE(tag.kind == FaceTagKind::conductor || tag.net == -1);
     }

@@ -15,10 +15,10 @@
 #include <cmath>
 #include <fstream>
 #include <functional>
-#include <iterator>
 #include <limits>
 #include <random>
 
+#include "folder.hpp"
 #include "pcbmesh/base/error.hpp"
 
 namespace pcbmesh::formats {
@@ -26,32 +26,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Empty folder of its own, removed with all it holds.
-class Folder {
- public:
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "pcbmesh_sink_XXXXXX").string();
-    path_ = ::mkdtemp(name.data());
-  }
-  ~Folder() { fs::remove_all(path_); }
-  [[nodiscard]] fs::path operator/(std::string_view name) const { return path_ / name; }
-  [[nodiscard]] const fs::path& path() const { return path_; }
-  [[nodiscard]] std::size_t num_files() const {
-    return static_cast<std::size_t>(std::distance(fs::directory_iterator(path_), fs::directory_iterator()));
-  }
-
- private:
-  fs::path path_;
-};
-
-std::string contents(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-void create(const fs::path& file, std::string_view text) {
-  std::ofstream(file, std::ios::binary) << text;
-}
+using testing::contents;
+using testing::create;
+using testing::Folder;
 
 Error error_of(const std::function<void()>& action) {
   try {
@@ -79,6 +56,7 @@ int in_child(const std::function<int()>& action) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
 }
 
+// K1
 TEST(FileSink, WritesTheFileWholeAndLeavesNothingBeside) {
   const Folder folder;
   std::string expected;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <set>
 #include <string>
 #include <tuple>
@@ -15,7 +16,7 @@
 #include "formats/kicad/format.hpp"
 #include "formats/syntax/input_file.hpp"
 #include "test_data.hpp"
-#include "union_area.hpp"
+#include "unit/union_area.hpp"
 
 namespace {
 
@@ -24,6 +25,11 @@ using nlohmann::json;
 
 constexpr geometry::ArcOptions oracle_arcs{.sagitta_nm = 100};
 constexpr double relative_tolerance = 5e-4;
+/// The oracle's areas have six decimals of a square millimetre, and its points and ours are rounded to 1 nm: 10 mm of edge off
+/// by 1 nm is 1e-5 mm2, a disc of 0.1 mm.
+constexpr double rounding_mm2 = 1e-5;
+/// KiCad flattens the board's edge with chords 5 um off: a hole of r = 1.6 mm seems 0.4 % smaller. The largest seen is 4.4e-5.
+constexpr double outline_tolerance = 1e-4;
 
 struct Key {
   int layer;
@@ -32,13 +38,65 @@ struct Key {
   auto operator<=>(const Key&) const = default;
 };
 
+/// Up to 5.99 an overbar was ~NAME; KiCad 9, which made the oracle, renames it ~{NAME}. The reader keeps the file's name.
+std::string without_braces(std::string net) {
+  for (std::size_t at = 0; (at = net.find("~{", at)) != std::string::npos; ++at) {
+    const std::size_t close = net.find('}', at);
+    if (close != std::string::npos) net.erase(close, 1);
+    net.erase(at + 1, 1);
+  }
+  return net;
+}
+
+Key key_of(const board::Board& board, const board::Shape& shape) {
+  const bool loose = shape.net == board::no_net && shape.kind == board::ShapeKind::graphic;
+  return {shape.copper_layer,
+          shape.net == board::no_net ? "" : without_braces(board.nets()[static_cast<std::size_t>(shape.net)]), loose};
+}
+
+/// The round corners of stroked fills (up to v6) are flattened by KiCad with the same 5 um when it loads the board.
+double stroked_fill_allowance(const geometry::Figure& figure) {
+  geometry::Ring ring = geometry::flatten(figure.path, oracle_arcs);
+  geometry::make_counter_clockwise(ring);
+  double turned = 0;
+  for (std::size_t i = 0, n = ring.size(); i < n; ++i) {
+    const geometry::Point a = ring[i], b = ring[(i + 1) % n], c = ring[(i + 2) % n];
+    const double ux = static_cast<double>(b.x - a.x), uy = static_cast<double>(b.y - a.y);
+    const double vx = static_cast<double>(c.x - b.x), vy = static_cast<double>(c.y - b.y);
+    turned += std::max(0.0, std::atan2(ux * vy - uy * vx, ux * vx + uy * vy));
+  }
+  return 2.0 / 3 * 0.005 * turned * static_cast<double>(figure.pen) * 0.5e-6;
+}
+
+/// KiCad flattens the primitives of custom pads with chords 5 um off, whatever the caller asks for (a circle of r = 0.5 mm
+/// loses 0.009 mm2, four rings of 02_custom_pads 0.72 mm2). A chord loses two thirds of its sagitta times its length; a stroke
+/// has two sides and a cap. This is what a net's custom pads may be off by.
+std::map<Key, double> coarse_arc_allowances(const board::Board& board) {
+  std::map<std::pair<std::int64_t, std::int32_t>, int> figures_of_pad;
+  for (const board::Shape& shape : board.shapes())
+    if (shape.kind == board::ShapeKind::pad) ++figures_of_pad[{shape.line, shape.copper_layer}];
+  std::map<Key, double> allowances;
+  for (const board::Shape& shape : board.shapes()) {
+    const geometry::Figure& figure = shape.figure;
+    if (shape.kind == board::ShapeKind::fill && figure.pen > 0)
+      allowances[key_of(board, shape)] += stroked_fill_allowance(figure);
+    const bool is_curved = figure.pen > 0 || !figure.path.arc_starts.empty();
+    if (shape.kind != board::ShapeKind::pad || !is_curved || figures_of_pad[{shape.line, shape.copper_layer}] < 2) continue;
+    const geometry::Ring ring = geometry::flatten(figure.path, oracle_arcs);
+    double length = 0;
+    for (std::size_t i = 1; i < ring.size() + (figure.path.closed ? 1 : 0); ++i)
+      length += std::hypot(static_cast<double>(ring[i % ring.size()].x - ring[i - 1].x),
+                           static_cast<double>(ring[i % ring.size()].y - ring[i - 1].y));
+    const double boundary_mm =
+        ((figure.pen > 0 && !figure.filled ? 2 : 1) * length + std::numbers::pi * static_cast<double>(figure.pen)) * 1e-6;
+    allowances[key_of(board, shape)] += 2.0 / 3 * 0.005 * boundary_mm;
+  }
+  return allowances;
+}
+
 std::map<Key, double> areas_of(const board::Board& board) {
   std::map<Key, tests::UnionArea> sums;
-  for (const board::Shape& shape : board.shapes()) {
-    const bool loose = shape.net == board::no_net && shape.kind == board::ShapeKind::graphic;
-    sums[{shape.copper_layer, shape.net == board::no_net ? "" : board.nets()[static_cast<std::size_t>(shape.net)], loose}].add(
-        shape.figure, oracle_arcs);
-  }
+  for (const board::Shape& shape : board.shapes()) sums[key_of(board, shape)].add(shape.figure, oracle_arcs);
   std::map<Key, double> areas;
   for (auto& [key, sum] : sums) areas[key] = sum.mm2();
   return areas;
@@ -49,7 +107,7 @@ struct Worst {
   std::string text = "none";
   void see(double ours, double theirs, double floor, const std::string& what) {
     const double off = std::max(0.0, std::abs(ours - theirs) - floor) / std::max(theirs, 1e-9);
-    if (off < relative) return;
+    if (off <= relative) return;
     relative = off;
     text = fmt::format("{}: {:.6f} mm2, oracle {:.6f} mm2, off {:.1e}", what, ours, theirs,
                        std::abs(ours - theirs) / std::max(theirs, 1e-9));
@@ -57,7 +115,7 @@ struct Worst {
 };
 
 void compare_areas(const board::Board& board, const json& oracle, bool has_text) {
-  std::map<Key, double> ours = areas_of(board);
+  std::map<Key, double> ours = areas_of(board), allowances = coarse_arc_allowances(board);
   Worst worst;
   ASSERT_EQ(board.copper_layers().size(), oracle["copper_layers"].size());
   double total = 0;
@@ -66,21 +124,22 @@ void compare_areas(const board::Board& board, const json& oracle, bool has_text)
     ASSERT_EQ(name, oracle["copper_layers"][static_cast<std::size_t>(layer)]);
     const json& entry = oracle["layers"][name];
     std::set<std::string> seen;
-    for (const auto& [net, numbers] : entry["nets"].items()) {
+    for (const auto& [full_net, numbers] : entry["nets"].items()) {
+      const std::string net = without_braces(full_net);
       const double theirs = numbers[0], mine = ours[{layer, net, false}];
       seen.insert(net);
       total += mine;
-      worst.see(mine, theirs, 1e-5, name + " " + net);
+      worst.see(mine, theirs, rounding_mm2 + allowances[{layer, net, false}], name + " " + net);
     }
     for (const auto& [key, area] : ours) {
       const bool is_new = key.layer == layer && !key.graphic_without_net && !seen.contains(key.net);
-      EXPECT_TRUE(!is_new || area < 1e-5) << name << " " << key.net << " is not in the oracle: " << area << " mm2";
+      EXPECT_TRUE(!is_new || area < rounding_mm2) << name << " " << key.net << " is not in the oracle: " << area << " mm2";
     }
     const double loose = ours[{layer, "", true}], theirs = entry["nonet_graphics_area"];
     if (has_text) {
-      EXPECT_LE(loose, theirs * (1 + relative_tolerance) + 1e-5) << name;
+      EXPECT_LE(loose, theirs * (1 + relative_tolerance) + rounding_mm2) << name;
     } else {
-      worst.see(loose, theirs, 1e-5, name + " graphics without net");
+      worst.see(loose, theirs, rounding_mm2, name + " graphics without net");
     }
   }
   fmt::print("  copper {:.3f} mm2; worst {}\n", total, worst.text);
@@ -151,7 +210,7 @@ void compare_outline(const board::Board& board, const json& oracle) {
   fmt::print("  outline {:.4f} mm2 in {} boards with {} cut-outs; oracle {}\n", area, board.outlines().size(), holes,
              theirs.dump());
   if (!theirs["ok"].get<bool>()) return;
-  EXPECT_NEAR(area, theirs["area"].get<double>(), 1e-5 * area);
+  EXPECT_NEAR(area, theirs["area"].get<double>(), outline_tolerance * area);
   EXPECT_EQ(board.outlines().size(), theirs["outlines"]);
   EXPECT_EQ(holes, theirs["holes"]);
 }
@@ -182,11 +241,18 @@ TEST_P(KicadOracle, AgreesWithKicadsOwnAreas) {
   compare(GetParam());
 }
 
+constexpr const char* largest_board = "20_vme_wren_12L_v9.kicad_pcb.xz";
+
+TEST(KicadOracleLarge, VmeWrenAgreesWithKicadsOwnAreas) {
+  PCBMESH_NEEDS_TEST_DATA();
+  compare(largest_board);
+}
+
 std::vector<std::string> boards() {
   std::vector<std::string> names;
   if (tests::test_data().empty()) return {"none"};
   for (const auto& entry : std::filesystem::directory_iterator(tests::test_data() / "kicad"))
-    names.push_back(entry.path().filename().string());
+    if (entry.path().filename() != largest_board) names.push_back(entry.path().filename().string());
   std::sort(names.begin(), names.end());
   return names;
 }

@@ -225,11 +225,21 @@ mesh::PrismMesh quality_mesh(const mesh::PlanarMesh& planar, const mesh::LayerPl
   return mesh::PrismMesh::from_parts(std::move(parts));
 }
 
+/// The mesh with its columns ever wider, so that no two columns have triangles of one shape.
+mesh::PlanarMesh stretched(const mesh::PlanarMesh& even) {
+  mesh::PlanarMeshParts parts;
+  for (const auto& [x, y] : even.points_m()) parts.points_m.push_back({x + 400 * x * x, y});
+  parts.triangles.assign(even.triangles().begin(), even.triangles().end());
+  parts.regions.assign(even.regions().begin(), even.regions().end());
+  parts.region_body_offsets.assign(static_cast<std::size_t>(even.num_regions()) + 1, 0);
+  return mesh::PlanarMesh::from_parts(std::move(parts));
+}
+
 TEST(QualityStatistics, MatchEveryPrismOneByOne) {
   const auto planar =
-      testing::grid(12, 9, 1.1e-3, 0.7e-3, [](int i, int j) { return j < 3   ? 0
-                                                                     : i < 5 ? 1
-                                                                             : 2; }, {{}, {}, {}});
+      stretched(testing::grid(12, 9, 1.1e-3, 0.7e-3, [](int i, int j) { return i >= 7  ? 2
+                                                                               : j < 3 ? 0
+                                                                                       : 1; }, {{}, {}, {}}));
   mesh::LayerPlanParts plan;
   plan.z_m = {0, 1e-3, 2e-3, 2.2e-3, 2.5e-3, 2.6e-3, 5e-3};
   plan.slab = {0, 0, 1, 2, 2, 3};

@@ -245,6 +245,7 @@ TEST(Study, WrongTypesAreErrors) {
 
 TEST(Study, ValuesOutOfRangeAreErrorsWithTheirLine) {
   expect_error("{\"schema_version\": 1,\n\"air\": {\n\"above\": -1}}", {"/air/above", "-1 mm"}, ErrorCode::study_invalid, 3);
+  expect_error("{\"schema_version\": 1,\n\"air\": {\n\"above\": -1\n}\n}", {"/air/above"}, ErrorCode::study_invalid, 3);
   expect_field_error(R"("air": {"above": 1e300})", {"/air/above"});
   expect_field_error(R"("air": {"above": 1001})", {"/air/above"});
   expect_field_error(R"("region": {"kind": "nets"})", {"/region/nets", "at least one"});

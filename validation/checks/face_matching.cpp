@@ -98,7 +98,7 @@ class Matcher {
     scratch_.resize(of_worker_.size());
   }
 
-  FaceMatch run(std::int64_t bytes_per_cell) {
+  FaceMatch run(const MatchOptions& options) {
     const std::int64_t num_cells = context_.num_cells(), num_items = num_cells + context_.num_faces();
     PartitionPlan plan;
     plan.num_threads = context_.num_threads;
@@ -106,8 +106,8 @@ class Matcher {
     // About ten faces start at a node: 4096 nodes keep a partition near a megabyte, the size of a core's own cache.
     shift_ = 12;
     plan.num_partitions = (context_.num_nodes() >> shift_) + 1;
-    plan.max_entries_at_once =
-        std::max<std::int64_t>(1 << 20, bytes_per_cell * num_cells / static_cast<std::int64_t>(sizeof(Entry<Index>)));
+    plan.max_entries_at_once = std::max(options.min_entries_at_once,
+                                        options.bytes_per_cell * num_cells / static_cast<std::int64_t>(sizeof(Entry<Index>)));
     boundary_of_partition_.resize(static_cast<std::size_t>(plan.num_partitions));
     partition_entries<Entry<Index>>(
         plan,
@@ -304,12 +304,12 @@ void FaceMatch::merge(const FaceMatch& other) {
   }
 }
 
-FaceMatch match_faces(const Context& context, NetContacts* nets, std::int64_t bytes_per_cell) {
+FaceMatch match_faces(const Context& context, NetContacts* nets, const MatchOptions& options) {
   // 32-bit entries take half the memory and suffice for half a thousand million cells.
   constexpr std::int64_t max_small = std::numeric_limits<std::uint32_t>::max() - 1;
   const bool small = context.num_nodes() < max_small && context.num_cells() + context.num_faces() < (max_small >> 3);
-  if (small) return Matcher<std::uint32_t>(context, nets).run(bytes_per_cell);
-  return Matcher<std::int64_t>(context, nets).run(bytes_per_cell);
+  if (small && !options.wide_ids) return Matcher<std::uint32_t>(context, nets).run(options);
+  return Matcher<std::int64_t>(context, nets).run(options);
 }
 
 }  // namespace pcbmesh::validation::checks

@@ -33,9 +33,14 @@ struct FaceMatch {
   void merge(const FaceMatch& other);
 };
 
+struct MatchOptions {
+  std::int64_t bytes_per_cell = 36;            ///< for the entries being matched; less memory means more passes over the cells
+  std::int64_t min_entries_at_once = 1 << 20;  ///< however few bytes_per_cell allows
+  bool wide_ids = false;                       ///< 64-bit entries even where 32 bits would do
+};
+
 /// @param nets  told of every pair of cells that share a face; may be null.
-/// @param bytes_per_cell  memory for the entries being matched; less memory means more passes over the cells.
 /// REQUIRES every corner to be a node. @cost about 45 bytes per cell, 0.15 us per cell.
-[[nodiscard]] FaceMatch match_faces(const Context& context, NetContacts* nets, std::int64_t bytes_per_cell = 36);
+[[nodiscard]] FaceMatch match_faces(const Context& context, NetContacts* nets, const MatchOptions& options = {});
 
 }  // namespace pcbmesh::validation::checks

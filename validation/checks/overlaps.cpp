@@ -86,13 +86,15 @@ bool is_separated(const Patch& patch, const Patch& other, double tolerance) {
 /// Both lie in one plane and share more than an edge.
 bool overlap(const Patch& f, const Patch& g, double tolerance) {
   if (f.area == 0 || g.area == 0) return false;
+  const double cosine = dot(f.normal, g.normal);
+  if (std::abs(cosine) < 0.5) return false;  // a cheap first look; the plane decides
   const Patch& large = f.area >= g.area ? f : g;
   const Patch& small = f.area >= g.area ? g : f;
   // The large face has the more trustworthy normal.
   for (std::size_t i = 0; i < small.n; ++i) {
     if (std::abs(dot(small.at[i] - large.at[0], large.normal)) > tolerance) return false;
   }
-  if (dot(f.normal, g.normal) > 0) {
+  if (cosine > 0) {
     // Neighbours on a flat side of the domain are the common case, and can overlap only if a cell is folded.
     for (std::size_t i = 0; i < f.n; ++i) {
       if (g.has(f.ids[i])) return false;
@@ -113,13 +115,19 @@ struct OverlapTallies {
   std::vector<std::int64_t> hanging;
 };
 
-void judge_pair(const Context& context, std::int64_t id, const Patch& f, const Patch& g, OverlapTallies& tallies) {
+bool contains(const Box& box, const Vector3& at) {
+  return box.meets({at, at});
+}
+
+/// The boxes are wider than the faces by the tolerance.
+void judge_pair(const Context& context, std::int64_t id, const Patch& f, const Box& box_f, const Patch& g, const Box& box_g,
+                OverlapTallies& tallies) {
   const double tolerance = context.tolerance;
   for (std::size_t i = 0; i < f.n; ++i) {
-    if (!g.has(f.ids[i]) && hangs_on(g, f.at[i], tolerance)) tallies.hanging.push_back(f.ids[i]);
+    if (!g.has(f.ids[i]) && contains(box_g, f.at[i]) && hangs_on(g, f.at[i], tolerance)) tallies.hanging.push_back(f.ids[i]);
   }
   for (std::size_t i = 0; i < g.n; ++i) {
-    if (!f.has(g.ids[i]) && hangs_on(f, g.at[i], tolerance)) tallies.hanging.push_back(g.ids[i]);
+    if (!f.has(g.ids[i]) && contains(box_f, g.at[i]) && hangs_on(f, g.at[i], tolerance)) tallies.hanging.push_back(g.ids[i]);
   }
   if (!overlap(f, g, tolerance)) return;
   if (f.n == g.n && all_points_on(f, g, tolerance)) {
@@ -158,20 +166,21 @@ Box box_around(const Patch& patch, double margin) {
 void search_slice(const Context& context, const std::vector<std::int64_t>& faces, std::span<const Box> boxes,
                   const BoxTree& tree, std::int64_t first, std::int64_t last, OverlapTallies& tallies) {
   // Faces of a mesh meet a few dozen others; a heap of garbage meets everything, and must not take its square.
-  std::int64_t budget = std::max<std::int64_t>(1'000'000, 4000 * (last - first));
+  constexpr std::int64_t looks_per_pair = 20;  // comparing two faces takes about as long as looking at this many boxes
+  std::int64_t budget = std::max<std::int64_t>(1'000'000, 2000 * (last - first));
   for (std::int64_t i = first; i < last; ++i) {
     const auto here = static_cast<std::size_t>(i);
-    if (budget <= 0) {
-      tallies.not_searched.add(faces[here]);
-      continue;
-    }
     const Patch patch = patch_of(context, faces[here]);
-    budget -= tree.each_meeting(boxes[here], [&](std::size_t there) {
-      if (there > here) {
-        judge_pair(context, std::min(faces[here], faces[there]), patch, patch_of(context, faces[there]), tallies);
-      }
-      return true;
-    });
+    if (budget > 0) {
+      budget -= tree.each_meeting(boxes[here], [&](std::size_t there) {
+        if (there <= here) return true;
+        judge_pair(context, std::min(faces[here], faces[there]), patch, boxes[here], patch_of(context, faces[there]),
+                   boxes[there], tallies);
+        budget -= looks_per_pair;
+        return budget > 0;
+      });
+    }
+    if (budget <= 0) tallies.not_searched.add(faces[here]);
   }
 }
 
