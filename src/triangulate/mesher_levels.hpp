@@ -9,6 +9,7 @@
 #include <CGAL/Mesh_2/Refine_edges_visitor.h>
 // clang-format on
 
+#include <cmath>
 #include <cstdint>
 #include <queue>
 #include <utility>
@@ -59,7 +60,12 @@ struct ConformsAboveFloor {
 
  private:
   [[nodiscard]] bool is_clear(Cdt::Vertex_handle a, Cdt::Vertex_handle b, const Kernel::Point_2& p) const {
-    const CGAL::Angle angle = CGAL::angle(a->point(), p, b->point());
+    const double x = (a->point().x() - p.x()) * (b->point().x() - p.x());
+    const double y = (a->point().y() - p.y()) * (b->point().y() - p.y());
+    const double dot = x + y, error_bound = 1e-15 * (std::abs(x) + std::abs(y));  // 4 roundings of 2^-53, doubled
+    if (dot > error_bound) return true;
+    if (dot < -error_bound) return false;
+    const CGAL::Angle angle = CGAL::angle(a->point(), p, b->point());  // exact
     return angle == CGAL::ACUTE || (angle == CGAL::RIGHT && !is_circle_closed);
   }
   [[nodiscard]] bool is_below_floor(Cdt::Vertex_handle a, Cdt::Vertex_handle b) const {

@@ -312,6 +312,14 @@ TEST(Triangulate, TrianglesOutsideTheDomainAreDropped) {
   EXPECT_EQ(result.mesh.bodies_of_region(0).size(), 1U);
 }
 
+TEST(Triangulate, ADomainWithNegativeWindingIsAbsent) {
+  std::vector<Point> clockwise = rectangle(0, 0, 1'000'000, 1'000'000);
+  std::reverse(clockwise.begin(), clockwise.end());
+  Drawing drawing;
+  drawing.ring(domain, clockwise);
+  EXPECT_EQ(run(drawing).mesh.num_triangles(), 0);
+}
+
 TEST(Triangulate, WindingTwoOrMinusOneIsPresenceByThePositiveRule) {
   Drawing drawing;
   drawing.ring(domain, rectangle(0, 0, 9'000'000, 9'000'000));
@@ -363,7 +371,10 @@ TEST(Triangulate, GradingIsFineAtCopperAndCoarseAway) {
   EXPECT_LT(graded.mesh.num_triangles() * 10, fine.mesh.num_triangles());
   const PlanarMesh& mesh = graded.mesh;
   double longest_far_nm = 0;
+  std::int32_t num_in_hole = 0;
   for (std::int32_t t = 0; t < mesh.num_triangles(); ++t) {
+    const auto bodies = mesh.bodies_of_region(mesh.regions()[static_cast<std::size_t>(t)]);
+    if (bodies.back() == second) ++num_in_hole;
     double nearest = 1e30;
     for (const std::int32_t v : mesh.triangles()[static_cast<std::size_t>(t)]) {
       const auto [x, y] = point_nm(mesh, v);
@@ -378,6 +389,7 @@ TEST(Triangulate, GradingIsFineAtCopperAndCoarseAway) {
     if (nearest > 8e6) longest_far_nm = std::max(longest_far_nm, longest_nm);
   }
   EXPECT_GT(longest_far_nm, 1.2e6);
+  EXPECT_LT(num_in_hole, 20);
 }
 
 TEST(Triangulate, CrossingEdgesAreRefusedWithThePlace) {

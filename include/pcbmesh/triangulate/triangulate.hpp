@@ -50,7 +50,7 @@ struct TriangulateResult {
 /// @guarantee T3  same input and options give the same bytes
 /// @guarantee T4  refinement ends: vertices are capped, and forced small angles are reported, not chased
 /// @throws Error planar_crossing_edges (403), triangulation_limit (404), cancelled (103).
-/// @cost about 1 us per triangle; peak about 110 bytes per triangle.
+/// @cost about 1 us and 120 bytes at the peak per triangle, linear (benchmarks/triangulate_bench.cpp).
 /// @source Ye and Daniels sec. 3; Shewchuk 2002, Ruppert 1995 through CGAL Mesh_2.
 [[nodiscard]] TriangulateResult triangulate(const mesh::PlanarGraph& graph, const model::Model& model,
                                             const TriangulateOptions& options, Diagnostics& diagnostics,
