@@ -8,6 +8,7 @@
 #include <charconv>
 #include <utility>
 
+#include "formats/kicad/drawing_nets.hpp"
 #include "formats/kicad/footprints.hpp"
 #include "formats/kicad/graphics.hpp"
 #include "formats/kicad/outlines.hpp"
@@ -105,6 +106,7 @@ ReadBoardResult read_board_text(std::string text, std::string file, std::string 
     if (item.is_list()) read_item(reading, via_defaults, item);
     if (++num_items % 1024 == 0) progress.at("read board", std::min(1.0, static_cast<double>(item.offset()) / bytes));
   }
+  adopt_nets(reading);
   add_used_rings(reading);
   progress.at("chain outline", 0);
   read_outlines(reading);

@@ -134,7 +134,11 @@ void read_graphic(Reading& reading, const Placement& place, Sexpr item) {
   reading.count_unknown(item, graphic_words);
   const Outlined drawn = drawn_by(reading, item);
   if (drawn.points.empty()) return;
-  reading.add_copper(ShapeKind::graphic, copper, reading.net_of(item), reading.figure(drawn, place, item), item);
+  const std::size_t before = reading.parts.shapes.size();
+  const std::int32_t net = reading.net_of(item);
+  reading.add_copper(ShapeKind::graphic, copper, net, reading.figure(drawn, place, item), item);
+  if (net == board::no_net && item.head().starts_with("gr_"))
+    for (std::size_t i = before; i < reading.parts.shapes.size(); ++i) reading.loose_drawings.push_back(i);
 }
 
 void skip_annotation(Reading& reading, Sexpr item) {

@@ -48,6 +48,7 @@ class Reading {
   Diagnostics diagnostics{};
   std::vector<OptionalRing> optional_rings{};
   std::vector<EdgePiece> edges{};
+  std::vector<std::size_t> loose_drawings{};  ///< shapes: top-level drawings on copper that state no net
 
   // Numbers and places. All throw Error input_number (203) or file_syntax (202) with the line.
   [[nodiscard]] double number(syntax::Sexpr atom) const;

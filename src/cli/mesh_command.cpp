@@ -102,7 +102,7 @@ Command add_mesh_command(CLI::App& program) {
       ->group(output);
   options->study = add_study_options(*command);
   command->footer(
-      "Beside board.msh appear board.tags.json (what each tag means), board.study.json (every choice, filled in) and\n"
+      "Beside board.msh appear board.tags.json (what each tag means), board.resolved.json (every choice, filled in) and\n"
       "board.report.json (counts, quality, times, moves, verdict).\n\n"
       "Examples:\n"
       "  pcbmesh mesh board.kicad_pcb -o board.msh\n"

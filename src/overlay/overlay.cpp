@@ -48,7 +48,7 @@ Cleaned clean(const Sheets& sheets, const OverlayOptions& options, Nm tolerance,
   std::vector<EdgeGraph> simplified;
   for (std::size_t s = 0; s < sheets.sheets.size(); ++s) {
     progress.at("simplification", static_cast<double>(s) / static_cast<double>(sheets.sheets.size()));
-    simplified.push_back(collapse(sheets.sheets[s].outlines, sheets.sheets[s].fixed, limits, labels, progress));
+    simplified.push_back(collapse(sheets.sheets[s].outlines, sheets.sheets[s].marks, limits, labels, progress));
   }
   std::vector<const EdgeGraph*> graphs;
   for (const EdgeGraph& graph : simplified) graphs.push_back(&graph);

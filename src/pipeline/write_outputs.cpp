@@ -68,7 +68,7 @@ void write_text_file(const std::filesystem::path& file, std::string_view text) {
 OutputResult write_outputs(const MeshBoardResult& result, const OutputOptions& options, const Progress& progress) {
   OutputResult out;
   const std::filesystem::path tags = file_beside(options.meshes.front(), ".tags.json"),
-                              study = file_beside(options.meshes.front(), ".study.json");
+                              study = file_beside(options.meshes.front(), ".resolved.json");
   // The contract first: whoever sees the mesh finds its meaning beside it.
   formats::tags_json::write_tags(result.mesh, tags, options.write.unit);
   write_text_file(study, study::to_json(result.resolved));

@@ -52,11 +52,11 @@ class CdtVertex : public Base, public Origin, public TimeStamped {
     using Other = CdtVertex<Kernel, typename Base::template Rebind_TDS<Tds>::Other>;
   };
   using Base::Base;
-  [[nodiscard]] float wanted_edge_nm() const { return wanted_edge_nm_; }
-  void set_wanted_edge_nm(float length) const { wanted_edge_nm_ = length; }
+  [[nodiscard]] float wanted_edge() const { return wanted_edge_; }
+  void set_wanted_edge(float length) const { wanted_edge_ = length; }
 
  private:
-  mutable float wanted_edge_nm_ = -1;  // negative: not asked yet; a cache, hence mutable
+  mutable float wanted_edge_ = -1;  // negative: not asked yet; a cache, hence mutable
 };
 
 /// Face of 64 bytes, one cache line, against 88 of CGAL's mesher face.

@@ -17,7 +17,7 @@ namespace {
 
 /// Copies in the triangulation's own order; vertices are numbered as it stores them.
 struct Raw {
-  std::vector<std::array<double, 2>> points_nm;
+  std::vector<std::array<double, 2>> points;
   std::vector<std::array<std::int32_t, 3>> triangles;
   std::vector<std::int32_t> regions;
   std::vector<std::array<std::int32_t, 2>> constrained;
@@ -25,10 +25,10 @@ struct Raw {
 
 Raw copy_domain(Cdt& cdt, const Regions& regions, double sine2_bound, Extraction& result) {
   Raw raw;
-  raw.points_nm.reserve(cdt.number_of_vertices());
+  raw.points.reserve(cdt.number_of_vertices());
   for (auto v = cdt.finite_vertices_begin(); v != cdt.finite_vertices_end(); ++v) {
-    v->set_graph_vertex(static_cast<std::int32_t>(raw.points_nm.size()));  // the origin has served; now it is the number
-    raw.points_nm.push_back({v->point().x(), v->point().y()});
+    v->set_graph_vertex(static_cast<std::int32_t>(raw.points.size()));  // the origin has served; now it is the number
+    raw.points.push_back({v->point().x(), v->point().y()});
   }
   std::vector<char> is_inside(regions.size());
   for (std::size_t r = 0; r < regions.size(); ++r) is_inside[r] = regions.is_in_domain(r) ? 1 : 0;
@@ -45,7 +45,7 @@ Raw copy_domain(Cdt& cdt, const Regions& regions, double sine2_bound, Extraction
       const std::int32_t a = face->vertex(Cdt::ccw(i))->graph_vertex(), b = face->vertex(Cdt::cw(i))->graph_vertex();
       if (a < b || !is_kept(face->neighbor(i))) raw.constrained.push_back({a, b});
     }
-    const auto shape = MeshBounds::measure(face->vertex(0)->point(), face->vertex(1)->point(), face->vertex(2)->point());
+    const auto shape = MeshBounds::measure(face);
     result.smallest_sine2 = std::min(result.smallest_sine2, shape.sine2);
     if (shape.sine2 < sine2_bound) ++result.num_below_bound;
   }
@@ -56,8 +56,8 @@ std::vector<std::uint32_t> triangle_order(const Raw& raw) {
   std::vector<std::array<float, 2>> centres(raw.triangles.size());
   for (std::size_t t = 0; t < centres.size(); ++t) {
     const auto& [a, b, c] = raw.triangles[t];
-    const auto &p = raw.points_nm[static_cast<std::size_t>(a)], &q = raw.points_nm[static_cast<std::size_t>(b)],
-               &r = raw.points_nm[static_cast<std::size_t>(c)];
+    const auto &p = raw.points[static_cast<std::size_t>(a)], &q = raw.points[static_cast<std::size_t>(b)],
+               &r = raw.points[static_cast<std::size_t>(c)];
     centres[t] = {static_cast<float>(p[0] + q[0] + r[0]), static_cast<float>(p[1] + q[1] + r[1])};
   }
   return hilbert_order(centres);
@@ -94,13 +94,13 @@ void write_regions(const std::vector<std::int32_t>& old_regions, const Regions& 
 
 }  // namespace
 
-Extraction extract(Cdt& cdt, const Regions& regions, double sine2_bound) {
+Extraction extract(Cdt& cdt, double unit_nm, const Regions& regions, double sine2_bound) {
   Extraction result;
   result.num_vertices = static_cast<std::int64_t>(cdt.number_of_vertices());
   Raw raw = copy_domain(cdt, regions, sine2_bound, result);
   cdt.clear();
   mesh::PlanarMeshParts& parts = result.parts;
-  Renumbering point_ids(raw.points_nm.size()), region_ids(regions.size());
+  Renumbering point_ids(raw.points.size()), region_ids(regions.size());
   parts.triangles.reserve(raw.triangles.size());
   parts.regions.reserve(raw.triangles.size());
   for (const std::uint32_t t : triangle_order(raw)) {
@@ -110,9 +110,10 @@ Extraction extract(Cdt& cdt, const Regions& regions, double sine2_bound) {
     parts.regions.push_back(region_ids(raw.regions[t]));
   }
   parts.points_m.reserve(point_ids.olds().size());
+  const double metres_per_unit = unit_nm * metres_per_nm;
   for (const std::int32_t old : point_ids.olds()) {
-    const auto& [x, y] = raw.points_nm[static_cast<std::size_t>(old)];
-    parts.points_m.push_back({x * metres_per_nm, y * metres_per_nm});
+    const auto& [x, y] = raw.points[static_cast<std::size_t>(old)];
+    parts.points_m.push_back({x * metres_per_unit, y * metres_per_unit});
   }
   parts.constrained.reserve(raw.constrained.size());
   for (const auto& [a, b] : raw.constrained) {

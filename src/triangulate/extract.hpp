@@ -18,6 +18,6 @@ struct Extraction {
 
 /// Flat arrays of the faces inside the domain. Triangles follow a Hilbert curve, points and regions are numbered where the
 /// triangles first meet them. Empties the triangulation, so that both never stand in memory at full size.
-[[nodiscard]] Extraction extract(Cdt& cdt, const Regions& regions, double sine2_bound);
+[[nodiscard]] Extraction extract(Cdt& cdt, double unit_nm, const Regions& regions, double sine2_bound);
 
 }  // namespace pcbmesh::triangulate

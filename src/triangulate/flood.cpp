@@ -74,7 +74,7 @@ class Flood {
     is_checked = 1;
     add_increments(face, i);
     const auto known = regions_.of(next->ticket() - 1);
-    if (!std::equal(sum_.begin(), sum_.end(), known.begin(), known.end())) throw_conflict(face, i, crossing.graph_edge);
+    if (!std::equal(sum_.begin(), sum_.end(), known.begin(), known.end())) throw_conflict(crossing.graph_edge);
   }
 
   /// sum_ := winding beyond edge i of the face.
@@ -107,10 +107,11 @@ class Flood {
     return {edge, along > 0};
   }
 
-  [[noreturn]] void throw_conflict(Cdt::Face_handle face, int i, std::int32_t graph_edge) const {
-    const auto p = face->vertex(Cdt::ccw(i))->point(), q = face->vertex(Cdt::cw(i))->point();
+  [[noreturn]] void throw_conflict(std::int32_t graph_edge) const {
+    const auto& [u, v] = graph_.edges()[static_cast<std::size_t>(graph_edge)];
+    const auto p = graph_.vertices()[static_cast<std::size_t>(u)], q = graph_.vertices()[static_cast<std::size_t>(v)];
     Spot spot;
-    spot.at_mm = {0.5e-6 * (p.x() + q.x()), 0.5e-6 * (p.y() + q.y())};
+    spot.at_mm = {0.5e-6 * static_cast<double>(p.x + q.x), 0.5e-6 * static_cast<double>(p.y + q.y)};
     throw Error(ErrorCode::internal,
                 fmt::format("the two sides of graph edge {} disagree about the bodies present; please report this", graph_edge),
                 spot, {graph_edge});

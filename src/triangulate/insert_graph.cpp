@@ -70,7 +70,7 @@ std::array<double, 2> crossing_mm(Point a, Point b, Point c, Point d) {
 
 }  // namespace
 
-void insert_graph(const mesh::PlanarGraph& graph, Cdt& cdt, const Progress& progress) {
+void insert_graph(const mesh::PlanarGraph& graph, double unit_nm, Cdt& cdt, const Progress& progress) {
   const auto vertices = graph.vertices();
   const auto edges = graph.edges();
   std::vector<std::array<float, 2>> rough(vertices.size());
@@ -80,8 +80,8 @@ void insert_graph(const mesh::PlanarGraph& graph, Cdt& cdt, const Progress& prog
   Cdt::Face_handle hint;
   for (const std::uint32_t i : hilbert_order(rough)) {
     const Point p = vertices[i];
-    // Integers below 2^53 are exact doubles, so CGAL's exact predicates judge the true graph.
-    handles[i] = cdt.insert(Kernel::Point_2(static_cast<double>(p.x), static_cast<double>(p.y)), hint);
+    // In nanometres these are integers below 2^53, exact as doubles, so CGAL's exact predicates judge the true graph.
+    handles[i] = cdt.insert(Kernel::Point_2(static_cast<double>(p.x) / unit_nm, static_cast<double>(p.y) / unit_nm), hint);
     handles[i]->set_graph_vertex(static_cast<std::int32_t>(i));
     hint = handles[i]->face();
     if ((i & 0xfffU) == 0) progress.check();

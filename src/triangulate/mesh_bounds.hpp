@@ -9,27 +9,27 @@
 
 namespace pcbmesh::triangulate {
 
-/// What is asked of every triangle, and the one function that measures it.
+/// What is asked of every triangle, and the one function that measures it. Lengths are in units of the triangulation.
 class MeshBounds {
  public:
   enum class Verdict { good, bad_shape, too_long };
 
   struct Shape {
-    double longest2 = 0, middle2 = 0, shortest2 = 0;  // squared edge lengths, nm^2
+    double longest2 = 0, middle2 = 0, shortest2 = 0;  // squared edge lengths
     int shortest = 0;                                 // corner opposite to the shortest edge
     double sine2 = 0;                                 // of the smallest angle
   };
 
   /// @param min_angle_deg  20.7 stands for the paper's bound B = 1/8 exactly
-  MeshBounds(double longest_edge_nm, double min_angle_deg);
+  /// @param floor  edges shorter than this are never split and never the reason to refine: what ends refinement between
+  /// near-coincident edges
+  MeshBounds(double longest_edge, double min_angle_deg, double floor);
 
-  /// Edge length max(vertex): at_copper + growth * distance; `copper` must outlive this.
-  void set_grading(double edge_at_copper_nm, double growth, const SegmentDistance& copper);
+  /// Wanted edge length: at_copper + growth * distance, at most the longest edge; `copper` must outlive this.
+  void set_grading(double edge_at_copper, double growth, const SegmentDistance& copper);
 
   [[nodiscard]] double sine2_bound() const { return sine2_bound_; }
-  /// Edges shorter than this are never split and never the reason to refine: what ends refinement between near-coincident
-  /// edges.
-  [[nodiscard]] double floor_nm() const { return floor_nm_; }
+  [[nodiscard]] double floor() const { return floor_; }
 
   [[nodiscard]] static Shape measure(const Kernel::Point_2& p, const Kernel::Point_2& q, const Kernel::Point_2& r) {
     const auto squared = [](const Kernel::Point_2& a, const Kernel::Point_2& b) {
@@ -49,12 +49,20 @@ class MeshBounds {
     return shape;
   }
 
-  [[nodiscard]] Verdict judge(Cdt::Face_handle face) const {
-    const Shape shape = measure(face->vertex(0)->point(), face->vertex(1)->point(), face->vertex(2)->point());
+  [[nodiscard]] static Shape measure(Cdt::Face_handle face) {
+    return measure(face->vertex(0)->point(), face->vertex(1)->point(), face->vertex(2)->point());
+  }
+
+  [[nodiscard]] Verdict judge(Cdt::Face_handle face, const Shape& shape) const {
     if (shape.longest2 > longest2_) return Verdict::too_long;
     if (copper_ != nullptr && shape.longest2 > at_copper2_ && is_too_long_here(face, shape.longest2)) return Verdict::too_long;
     if (!(shape.sine2 < sine2_bound_) || shape.shortest2 < floor2_) return Verdict::good;
     return is_forced(face, shape.shortest) ? Verdict::good : Verdict::bad_shape;
+  }
+
+  /// For refinement by rank: too long edges come first, the longest before the shorter, then the smallest angles.
+  [[nodiscard]] double urgency(Verdict verdict, const Shape& shape) const {
+    return verdict == Verdict::too_long ? shape.longest2 / longest2_ : -shape.sine2;
   }
 
   /// Is the angle at this corner an angle of the graph itself? No vertex can improve it.
@@ -64,10 +72,10 @@ class MeshBounds {
 
  private:
   [[nodiscard]] bool is_too_long_here(Cdt::Face_handle face, double longest2) const;
-  [[nodiscard]] double wanted_nm(Cdt::Vertex_handle vertex) const;
+  [[nodiscard]] double wanted(Cdt::Vertex_handle vertex) const;
 
-  double longest_nm_ = 0, longest2_ = 0, sine2_bound_ = 0, floor_nm_ = 0, floor2_ = 0;
-  double at_copper_nm_ = 0, at_copper2_ = 0, growth_ = 0;
+  double longest_ = 0, longest2_ = 0, sine2_bound_ = 0, floor_ = 0, floor2_ = 0;
+  double at_copper_ = 0, at_copper2_ = 0, growth_ = 0;
   const SegmentDistance* copper_ = nullptr;
 };
 

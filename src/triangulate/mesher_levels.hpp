@@ -10,6 +10,7 @@
 // clang-format on
 
 #include <cstdint>
+#include <queue>
 #include <utility>
 #include <vector>
 
@@ -32,23 +33,45 @@ using Zone = CGAL::Triangulation_mesher_level_traits_2<Cdt>::Zone;
   return true;
 }
 
-/// Gabriel property, but edges below a floor always have it: near-coincident edges would split each other for ever.
-struct ConformsAboveFloor : CGAL::Mesh_2::Is_locally_conforming_Gabriel<Cdt> {
-  using Gabriel = CGAL::Mesh_2::Is_locally_conforming_Gabriel<Cdt>;
-  double floor2_nm2 = 0;
+/// Gabriel property of constrained edges: no visible vertex inside their diametral circle. Two differences to CGAL's:
+/// a vertex on the circle itself is allowed (boards are full of right angles, and closed circles cost 5 % more triangles),
+/// and edges below a floor always conform (near-coincident edges would split each other for ever).
+struct ConformsAboveFloor {
+  double floor2 = 0;
+  bool is_circle_closed = false;  // CGAL's and the paper's way
 
-  [[nodiscard]] bool is_below_floor(Cdt::Vertex_handle a, Cdt::Vertex_handle b) const {
-    return CGAL::squared_distance(a->point(), b->point()) < floor2_nm2;
-  }
   bool operator()(const Cdt& cdt, Cdt::Face_handle face, int i) const {
-    return Gabriel::operator()(cdt, face, i) || is_below_floor(face->vertex(Cdt::cw(i)), face->vertex(Cdt::ccw(i)));
+    const auto a = face->vertex(Cdt::cw(i)), b = face->vertex(Cdt::ccw(i));
+    const auto near = face->vertex(i), far = cdt.tds().mirror_vertex(face, i);
+    return ((cdt.is_infinite(near) || is_clear(a, b, near->point())) &&
+            (cdt.is_infinite(far) || is_clear(a, b, far->point()))) ||
+           is_below_floor(a, b);
   }
   bool operator()(const Cdt& cdt, Cdt::Vertex_handle a, Cdt::Vertex_handle b) const {
-    return Gabriel::operator()(cdt, a, b) || is_below_floor(a, b);
+    Cdt::Face_handle face;
+    int i = 0;
+    return !cdt.is_edge(a, b, face, i) || operator()(cdt, face, i);
   }
-  bool operator()(const Cdt& cdt, Cdt::Face_handle face, int i, const Kernel::Point_2& p) const {
-    return Gabriel::operator()(cdt, face, i, p) || is_below_floor(face->vertex(Cdt::cw(i)), face->vertex(Cdt::ccw(i)));
+  bool operator()(const Cdt&, Cdt::Face_handle face, int i, const Kernel::Point_2& p) const {
+    const auto a = face->vertex(Cdt::cw(i)), b = face->vertex(Cdt::ccw(i));
+    return is_clear(a, b, p) || is_below_floor(a, b);
   }
+
+ private:
+  [[nodiscard]] bool is_clear(Cdt::Vertex_handle a, Cdt::Vertex_handle b, const Kernel::Point_2& p) const {
+    const CGAL::Angle angle = CGAL::angle(a->point(), p, b->point());
+    return angle == CGAL::ACUTE || (angle == CGAL::RIGHT && !is_circle_closed);
+  }
+  [[nodiscard]] bool is_below_floor(Cdt::Vertex_handle a, Cdt::Vertex_handle b) const {
+    return CGAL::squared_distance(a->point(), b->point()) < floor2;
+  }
+};
+
+struct EdgeSplittingSetup {
+  const GraphEdgeIndex* graph_edges = nullptr;
+  double floor = 0;
+  double unit_nm = 1;
+  bool is_circle_closed = false;
 };
 
 /// CGAL's edge level; it also writes down on which graph edge each new vertex lies.
@@ -58,36 +81,77 @@ class EdgeSplitting : public CGAL::Mesh_2::Refine_edges_base_with_clusters<Cdt, 
  public:
   using Base::Base;
 
-  void configure(const MeshBounds& bounds, const GraphEdgeIndex& graph_edges) {
-    this->is_locally_conform.floor2_nm2 = bounds.floor_nm() * bounds.floor_nm();
-    graph_edges_ = &graph_edges;
+  void configure(const EdgeSplittingSetup& setup) {
+    this->is_locally_conform.floor2 = setup.floor * setup.floor;
+    this->is_locally_conform.is_circle_closed = setup.is_circle_closed;
+    setup_ = setup;
   }
 
   void after_insertion_impl(const Cdt::Vertex_handle& v) {
     const Cdt::Vertex_handle a = this->va, b = this->vb;
     v->set_graph_edge(a->is_on_graph_edge()   ? a->graph_edge()
                       : b->is_on_graph_edge() ? b->graph_edge()
-                                              : graph_edges_->find(a->graph_vertex(), b->graph_vertex()));
+                                              : setup_.graph_edges->find(a->graph_vertex(), b->graph_vertex()));
     Base::after_insertion_impl(v);
   }
 
   CGAL::Mesher_level_conflict_status private_test_point_conflict_impl(const Kernel::Point_2& p, triangulate::Zone& zone) const {
     if (is_star_shaped(this->tr, p, zone)) return CGAL::NO_CONFLICT;
     Spot spot;
-    spot.at_mm = {p.x() * 1e-6, p.y() * 1e-6};
+    spot.at_mm = {p.x() * setup_.unit_nm * 1e-6, p.y() * setup_.unit_nm * 1e-6};
     throw Error(ErrorCode::triangulation_limit,
                 "an edge can't be split: another edge is nearer than double precision can tell. Use a larger --tolerance",
                 spot);
   }
 
  private:
-  const GraphEdgeIndex* graph_edges_ = nullptr;
+  EdgeSplittingSetup setup_;
 };
 
-/// Face level of Delaunay refinement with a queue of bad faces that is last in, first out. CGAL's own queue keeps faces
-/// sorted in two maps, which is two thirds of its time; the youngest faces are in cache, and an entry whose face has
-/// changed since is skipped when met (its ticket is no longer the face's).
-template <class Triangulation, class Bounds, class EdgeLevel>
+/// Bad faces, last in, first out: the youngest are in cache. CGAL's own queue keeps faces sorted in two maps, which is two
+/// thirds of its time. An entry whose face has changed since is skipped when met: its ticket is no longer the face's.
+class YoungestFirst {
+ public:
+  void clear() { entries_.clear(); }
+  void push(Cdt::Face_handle face, double /*urgency*/) { entries_.emplace_back(face, face->ticket()); }
+  void pop() { entries_.pop_back(); }
+  [[nodiscard]] Cdt::Face_handle top() const { return entries_.back().first; }
+  /// Drops what is out of date, then tells whether anything is left.
+  [[nodiscard]] bool is_empty() {
+    while (!entries_.empty() && entries_.back().first->ticket() != entries_.back().second) entries_.pop_back();
+    return entries_.empty();
+  }
+
+ private:
+  std::vector<std::pair<Cdt::Face_handle, std::uint32_t>> entries_;
+};
+
+/// Bad faces by urgency, equals in order of arrival, as CGAL's mesher and so the paper's takes them; the same lazy deletion.
+class WorstFirst {
+ public:
+  void clear() { entries_ = {}; }
+  void push(Cdt::Face_handle face, double urgency) { entries_.push({urgency, face->ticket(), face}); }
+  void pop() { entries_.pop(); }
+  [[nodiscard]] Cdt::Face_handle top() const { return entries_.top().face; }
+  [[nodiscard]] bool is_empty() {
+    while (!entries_.empty() && entries_.top().face->ticket() != entries_.top().ticket) entries_.pop();
+    return entries_.empty();
+  }
+
+ private:
+  struct Entry {
+    double urgency;
+    std::uint32_t ticket;
+    Cdt::Face_handle face;
+    bool operator<(const Entry& other) const {
+      return urgency != other.urgency ? urgency < other.urgency : ticket > other.ticket;
+    }
+  };
+  std::priority_queue<Entry> entries_;
+};
+
+/// Face level of Delaunay refinement, with a queue of our choice.
+template <class Triangulation, class Bounds, class EdgeLevel, class Queue>
 class FaceSplitting : public CGAL::Triangulation_mesher_level_traits_2<Triangulation>, public CGAL::No_after_no_insertion {
  public:
   using FaceHandle = typename Triangulation::Face_handle;
@@ -109,20 +173,17 @@ class FaceSplitting : public CGAL::Triangulation_mesher_level_traits_2<Triangula
     for (auto face = cdt.finite_faces_begin(); face != cdt.finite_faces_end(); ++face) enqueue_if_bad(face);
   }
 
-  bool no_longer_element_to_refine_impl() {
-    while (!queue_.empty() && queue_.back().first->ticket() != queue_.back().second) queue_.pop_back();
-    return queue_.empty();
-  }
-  FaceHandle get_next_element_impl() const { return queue_.back().first; }
+  bool no_longer_element_to_refine_impl() { return queue_.is_empty(); }
+  FaceHandle get_next_element_impl() const { return queue_.top(); }
   void pop_next_element_impl() {
-    queue_.back().first->set_ticket(0);
-    queue_.pop_back();
+    queue_.top()->set_ticket(0);
+    queue_.pop();
   }
 
   Point refinement_point_impl(const FaceHandle& face) const { return this->triangulation_ref_impl().circumcenter(face); }
 
   void before_conflicts_impl(const FaceHandle& face, const Point&) {
-    edges_.set_imperative_refinement(bounds_.judge(face) == Bounds::Verdict::too_long);
+    edges_.set_imperative_refinement(bounds_.judge(face, Bounds::measure(face)) == Bounds::Verdict::too_long);
   }
 
   /// Faces whose circle holds p, reached from `face` without passing a constrained edge: no point location is needed.
@@ -180,19 +241,24 @@ class FaceSplitting : public CGAL::Triangulation_mesher_level_traits_2<Triangula
 
  private:
   void enqueue_if_bad(FaceHandle face) {
-    if (!face->is_in_domain() || bounds_.judge(face) == Bounds::Verdict::good) return;
+    if (!face->is_in_domain()) return;
+    const auto shape = Bounds::measure(face);
+    const auto verdict = bounds_.judge(face, shape);
+    if (verdict == Bounds::Verdict::good) return;
     if (++ticket_ == 0) ++ticket_;
     face->set_ticket(ticket_);
-    queue_.emplace_back(face, ticket_);
+    queue_.push(face, bounds_.urgency(verdict, shape));
   }
 
   Bounds& bounds_;
   EdgeLevel& edges_;
-  std::vector<std::pair<FaceHandle, std::uint32_t>> queue_;
+  Queue queue_;
   std::uint32_t ticket_ = 0;
 };
 
 using EdgeLevel = CGAL::Mesh_2::Refine_edges_with_clusters<Cdt, ConformsAboveFloor, EdgeSplitting>;
-using FaceLevel = CGAL::Mesh_2::Refine_faces<Cdt, const MeshBounds, EdgeLevel, FaceSplitting<Cdt, const MeshBounds, EdgeLevel>>;
+template <class Queue>
+using FaceLevel =
+    CGAL::Mesh_2::Refine_faces<Cdt, const MeshBounds, EdgeLevel, FaceSplitting<Cdt, const MeshBounds, EdgeLevel, Queue>>;
 
 }  // namespace pcbmesh::triangulate

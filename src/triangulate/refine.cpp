@@ -10,44 +10,53 @@
 namespace pcbmesh::triangulate {
 namespace {
 
-[[noreturn]] void throw_limit(const Cdt& cdt, std::int64_t max_vertices) {
+[[noreturn]] void throw_limit(const Cdt& cdt, const RefineLimits& limits) {
   // The youngest vertex is where refinement was at work.
   Cdt::Vertex_handle last = cdt.finite_vertices_begin();
   for (auto v = cdt.finite_vertices_begin(); v != cdt.finite_vertices_end(); ++v) {
     if (last->time_stamp() < v->time_stamp()) last = v;
   }
   Spot spot;
-  spot.at_mm = {last->point().x() * 1e-6, last->point().y() * 1e-6};
+  spot.at_mm = {last->point().x() * limits.unit_nm * 1e-6, last->point().y() * limits.unit_nm * 1e-6};
   throw Error(
       ErrorCode::triangulation_limit,
-      fmt::format(
-          "refinement reached the limit of {} vertices. Ask for longer edges or a smaller angle, raise the limit, or use "
-          "a larger --tolerance if features nearly touch here",
-          max_vertices),
+      fmt::format("refinement reached the limit of {} vertices. Ask for longer edges or a smaller angle, raise the limit, "
+                  "or use a larger --tolerance if features nearly touch here",
+                  limits.max_vertices),
       spot);
 }
 
-}  // namespace
-
-void refine(Cdt& cdt, const MeshBounds& bounds, const GraphEdgeIndex& graph_edges, std::int64_t max_vertices,
-            double expected_vertices, const Progress& progress) {
-  if (cdt.dimension() < 2) return;
+template <class Queue>
+void refine_with(Cdt& cdt, const MeshBounds& bounds, EdgeSplittingSetup setup, const RefineLimits& limits,
+                 const Progress& progress) {
   CGAL::Mesh_2::Clusters<Cdt> clusters(cdt);
   CGAL::Null_mesher_level no_level;
   CGAL::Null_mesh_visitor no_visitor;
   EdgeLevel edges(cdt, clusters, no_level);
-  edges.configure(bounds, graph_edges);
-  FaceLevel faces(cdt, bounds, edges);
-  CGAL::Mesh_2::Refine_edges_visitor_from_faces<FaceLevel> visitor(faces, edges, no_visitor);
+  edges.configure(setup);
+  FaceLevel<Queue> faces(cdt, bounds, edges);
+  CGAL::Mesh_2::Refine_edges_visitor_from_faces<FaceLevel<Queue>> visitor(faces, edges, no_visitor);
   clusters.create_clusters();
   edges.scan_triangulation();
   faces.scan_triangulation();
   for (std::int64_t step = 1; faces.try_to_insert_one_point(visitor); ++step) {
     const auto num_vertices = static_cast<std::int64_t>(cdt.number_of_vertices());
-    if (num_vertices > max_vertices) throw_limit(cdt, max_vertices);
+    if (num_vertices > limits.max_vertices) throw_limit(cdt, limits);
     if ((step & 0x3fff) == 0) {
-      progress.at("triangulate", std::min(0.99, static_cast<double>(num_vertices) / std::max(expected_vertices, 1.0)));
+      progress.at("triangulate", std::min(0.99, static_cast<double>(num_vertices) / std::max(limits.expected_vertices, 1.0)));
     }
+  }
+}
+
+}  // namespace
+
+void refine(Cdt& cdt, const MeshBounds& bounds, const GraphEdgeIndex& graph_edges, const RefineLimits& limits, bool worst_first,
+            const Progress& progress) {
+  const EdgeSplittingSetup setup{&graph_edges, bounds.floor(), limits.unit_nm, worst_first};
+  if (worst_first) {
+    refine_with<WorstFirst>(cdt, bounds, setup, limits, progress);
+  } else {
+    refine_with<YoungestFirst>(cdt, bounds, setup, limits, progress);
   }
 }
 

@@ -10,9 +10,16 @@
 
 namespace pcbmesh::triangulate {
 
+struct RefineLimits {
+  std::int64_t max_vertices = 0;
+  double expected_vertices = 1;  ///< for the progress only
+  double unit_nm = 1;            ///< for the place in messages
+};
+
 /// Delaunay refinement of the faces marked in_domain. New vertices on graph edges carry the edge in their Origin.
 /// @throws Error triangulation_limit (404), cancelled (103).
-void refine(Cdt& cdt, const MeshBounds& bounds, const GraphEdgeIndex& graph_edges, std::int64_t max_vertices,
-            double expected_vertices, const Progress& progress);
+/// @param worst_first  CGAL's order of work and closed diametral circles instead of ours
+void refine(Cdt& cdt, const MeshBounds& bounds, const GraphEdgeIndex& graph_edges, const RefineLimits& limits, bool worst_first,
+            const Progress& progress);
 
 }  // namespace pcbmesh::triangulate

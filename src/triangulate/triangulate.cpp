@@ -19,6 +19,9 @@
 namespace pcbmesh::triangulate {
 namespace {
 
+// Far below any feature and far above what doubles resolve on a board of a metre.
+constexpr double floor_nm = 50;
+
 /// CPU seconds of the process since the last call.
 class CpuClock {
  public:
@@ -49,7 +52,8 @@ void check(const TriangulateOptions& options) {
   }
 }
 
-std::vector<SegmentDistance::Segment> copper_segments(const mesh::PlanarGraph& graph, const model::Model& model) {
+std::vector<SegmentDistance::Segment> copper_segments(const mesh::PlanarGraph& graph, const model::Model& model,
+                                                      double unit_nm) {
   const auto bodies = model.bodies();
   const auto is_copper = [&](const mesh::Increment& increment) {
     const auto kind = bodies[static_cast<std::size_t>(increment.body)].kind;
@@ -61,13 +65,13 @@ std::vector<SegmentDistance::Segment> copper_segments(const mesh::PlanarGraph& g
     if (std::none_of(increments.begin(), increments.end(), is_copper)) continue;
     const auto p = graph.vertices()[static_cast<std::size_t>(graph.edges()[e][0])];
     const auto q = graph.vertices()[static_cast<std::size_t>(graph.edges()[e][1])];
-    segments.push_back(
-        {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(q.x), static_cast<double>(q.y)});
+    segments.push_back({static_cast<double>(p.x) / unit_nm, static_cast<double>(p.y) / unit_nm,
+                        static_cast<double>(q.x) / unit_nm, static_cast<double>(q.y) / unit_nm});
   }
   return segments;
 }
 
-/// Area in nm^2 of the faces inside the domain.
+/// Area, in squared units of the triangulation, of the faces inside the domain.
 double mark_domain(Cdt& cdt, const Regions& regions) {
   double area = 0;
   for (auto face = cdt.all_faces_begin(); face != cdt.all_faces_end(); ++face) {
@@ -90,8 +94,9 @@ TriangulateResult triangulate(const mesh::PlanarGraph& graph, const model::Model
   progress.at("triangulate", 0);
   CpuClock clock;
   TriangulateStatistics statistics;
+  const double unit_nm = options.as_in_paper ? 1e6 : 1;
   Cdt cdt;
-  insert_graph(graph, cdt, progress);
+  insert_graph(graph, unit_nm, cdt, progress);
   if (cdt.dimension() < 2) {  // no ring, so no domain
     return {mesh::PlanarMesh::from_parts({.points_m = {},
                                           .triangles = {},
@@ -102,23 +107,24 @@ TriangulateResult triangulate(const mesh::PlanarGraph& graph, const model::Model
             statistics};
   }
   const GraphEdgeIndex graph_edges(graph);
-  const double area_nm2 = mark_domain(cdt, flood(cdt, graph, graph_edges));
+  const double area = mark_domain(cdt, flood(cdt, graph, graph_edges));
   statistics.num_input_vertices = static_cast<std::int64_t>(graph.vertices().size());
   statistics.cdt_s = clock.lap();
 
-  MeshBounds bounds(options.longest_edge_nm, options.min_angle_deg);
-  const SegmentDistance copper(options.grading ? copper_segments(graph, model) : std::vector<SegmentDistance::Segment>{});
-  if (options.grading && !copper.is_empty())
-    bounds.set_grading(options.grading->edge_at_copper_nm, options.grading->growth, copper);
-  // Half as many vertices as triangles, each of about 0.2 L^2 (Ye and Daniels, table 3) where the longest edge drives; for the
-  // bar only.
-  const double expected =
-      3 * static_cast<double>(graph.vertices().size()) + 2.6 * area_nm2 / (options.longest_edge_nm * options.longest_edge_nm);
-  refine(cdt, bounds, graph_edges, options.max_vertices, expected, progress);
+  MeshBounds bounds(options.longest_edge_nm / unit_nm, options.min_angle_deg, floor_nm / unit_nm);
+  const SegmentDistance copper(options.grading ? copper_segments(graph, model, unit_nm)
+                                               : std::vector<SegmentDistance::Segment>{});
+  if (options.grading && !copper.is_empty()) {
+    bounds.set_grading(options.grading->edge_at_copper_nm / unit_nm, options.grading->growth, copper);
+  }
+  // For the progress bar only. Where the longest edge drives, triangles have about 0.2 L^2 and share half a vertex each.
+  const double longest = options.longest_edge_nm / unit_nm;
+  const double expected = 3 * static_cast<double>(graph.vertices().size()) + 2.6 * area / (longest * longest);
+  refine(cdt, bounds, graph_edges, {options.max_vertices, expected, unit_nm}, options.as_in_paper, progress);
   statistics.refine_s = clock.lap();
 
   const Regions regions = flood(cdt, graph, graph_edges);
-  Extraction extraction = extract(cdt, regions, bounds.sine2_bound());
+  Extraction extraction = extract(cdt, unit_nm, regions, bounds.sine2_bound());
   statistics.num_steiner = extraction.num_vertices - statistics.num_input_vertices;
   statistics.num_below_bound = extraction.num_below_bound;
   statistics.min_angle_deg = std::asin(std::sqrt(std::min(extraction.smallest_sine2, 0.75))) * 180 / std::numbers::pi;

@@ -3,51 +3,19 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <string>
 
-#include "formats/kicad/board_reader.hpp"
 #include "formats/kicad/format.hpp"
-#include "formats/syntax/input_file.hpp"
-#include "pcbmesh/base/error.hpp"
-#include "test_data.hpp"
-#include "union_area.hpp"
+#include "unit/kicad_text.hpp"
+#include "unit/union_area.hpp"
 
 namespace {
 
 using namespace pcbmesh;
+using namespace pcbmesh::tests;
 using board::Board;
 using board::ShapeKind;
-using formats::ReadBoardResult;
 
-const std::string four_layers =
-    "(layers (0 \"F.Cu\" signal) (4 \"In1.Cu\" power \"ground\") (6 \"In2.Cu\" signal) (2 \"B.Cu\" signal) (25 \"Edge.Cuts\" "
-    "user))";
-const std::string four_old_layers =
-    "(layers (0 F.Cu signal) (1 In1.Cu power) (2 In2.Cu signal) (31 B.Cu signal) (44 Edge.Cuts user))";
-const std::string nets = "(net 0 \"\") (net 1 \"GND\") (net 2 \"/a b\")";
-const std::string edge =
-    "(gr_rect (start 0 0) (end 20 10) (stroke (width 0.1) (type default)) (fill no) (layer \"Edge.Cuts\"))";
-
-ReadBoardResult read_text(const std::string& text) {
-  return formats::kicad::read_board_text(text, "test.kicad_pcb", "test");
-}
-std::string text_of(const std::string& items, const std::string& version = "20241229", const std::string& setup = "") {
-  return "(kicad_pcb (version " + version + ") (generator \"test\")\n(general (thickness 1.6))\n" +
-         (std::stoll(version) < 20240101 ? four_old_layers : four_layers) + "\n(setup " + setup + ")\n" + nets + "\n" + items +
-         ")\n";
-}
-ReadBoardResult read(const std::string& items, const std::string& version = "20241229", const std::string& setup = "") {
-  return read_text(text_of(items, version, setup));
-}
-Error error_of(const std::string& text) {
-  try {
-    (void)read_text(text);
-  } catch (const Error& error) {
-    return error;
-  }
-  return Error(ErrorCode::internal, "no error");
-}
 std::string pad(const std::string& shape, const std::string& rest, const std::string& at = "(at 0 0)",
                 const std::string& footprint = "(at 10 5)") {
   return "(footprint \"f\" (layer \"F.Cu\") " + footprint +
@@ -345,8 +313,7 @@ TEST(KicadReader, DrawingsOnCopper) {
   EXPECT_EQ(old_arc.shapes()[0].figure.path.points.back(), (geometry::Point{0, -1'000'000}));
   EXPECT_NEAR(area(old_arc, 0), pi / 2 * 0.2 + pi * 0.01, 1e-3);
   const double quarter_of_circle = 0.5522847498;
-  const std::string k = std::to_string(quarter_of_circle), m = std::to_string(1 - quarter_of_circle);
-  (void)m;
+  const std::string k = std::to_string(quarter_of_circle);
   EXPECT_NEAR(of("(gr_curve (pts (xy 1 0) (xy 1 " + k + ") (xy " + k + " 1) (xy 0 1)) (stroke (width 0.2)) (layer \"F.Cu\"))"),
               pi / 2 * 0.2 + pi * 0.01, 1e-3);
   const auto turned = read(
@@ -354,6 +321,27 @@ TEST(KicadReader, DrawingsOnCopper) {
                           "(layer \"F.Cu\")))")
                           .board;
   EXPECT_EQ(turned.shapes()[0].figure.path.points, (geometry::Ring{{10'000'000, -5'000'000}, {10'000'000, -3'000'000}}));
+}
+
+TEST(KicadReader, DrawingsAdoptTheNetTheyTouch) {
+  const std::string track = "(segment (start 0 0) (end 1 0) (width 0.2) (layer \"F.Cu\") (net 1))";
+  const std::string chain =
+      "(gr_line (start 5 0) (end 9 0) (stroke (width 0.2)) (layer \"F.Cu\"))"
+      "(gr_rect (start 0.5 -1) (end 5 1) (stroke (width 0)) (fill yes) (layer \"F.Cu\"))";
+  const auto adopted = read(track + chain).board;
+  EXPECT_EQ(adopted.shapes()[1].net, 0);
+  EXPECT_EQ(adopted.shapes()[2].net, 0);
+  const auto apart = read(track + "(gr_line (start 1.2 0) (end 9 0) (stroke (width 0.2)) (layer \"F.Cu\"))").board;
+  EXPECT_EQ(apart.shapes()[1].net, board::no_net);
+  const auto shorted = read(track + chain + "(segment (start 9 0) (end 9 1) (width 0.2) (layer \"F.Cu\") (net 2))");
+  EXPECT_EQ(shorted.board.shapes()[1].net, board::no_net);
+  EXPECT_EQ(shorted.diagnostics.count("kicad.drawing_joins_nets"), 2);
+  const auto tie =
+      read(
+          track +
+          "(footprint \"tie\" (layer \"F.Cu\") (at 0 0) (fp_line (start 0 0) (end 5 0) (stroke (width 0.2)) (layer \"F.Cu\")))")
+          .board;
+  EXPECT_EQ(tie.shapes()[1].net, board::no_net);
 }
 
 TEST(KicadReader, CountsTextOnCopper) {
@@ -487,97 +475,12 @@ TEST(KicadReader, RepairsTheBracketThe9Point0WriterForgets) {
   EXPECT_EQ(said.count("kicad.bracket_repaired"), 1);
 }
 
-TEST(KicadReader, TinyDrillsAreClampedWithAWord) {
-  const auto [board, said] = read(
-      "(via (at 3 4) (size 0.6) (drill 0.00001) (layers \"F.Cu\" \"B.Cu\") (net 1)) (via (at 3 8) (size 0.1) (drill 0.00001) "
-      "(layers \"F.Cu\" \"B.Cu\") (net 1))");
-  EXPECT_EQ(board.drills()[0].figure.pen, 100'000);
-  EXPECT_EQ(board.drills()[1].figure.pen, 50'000);
-  EXPECT_EQ(said.count("kicad.tiny_drill"), 2);
-}
-
-TEST(KicadReader, UnknownNetsAndLayersAreWarned) {
-  const auto [board, said] = read(
-      "(segment (start 0 0) (end 1 0) (width 0.1) (layer \"F.Cu\") (net 99)) (segment (start 0 0) (end 1 0) (width 0.1) (layer "
-      "\"In7.Cu\") (net 1))"
-      "(via blind (at 3 4) (size 0.6) (drill 0.3) (layers \"F.Cu\" \"In7.Cu\") (net 1)) (segment (start 0 0) (end 1 0) (width "
-      "0) (layer \"F.Cu\") (net 1))");
-  EXPECT_EQ(board.shapes()[0].net, board::no_net);
-  EXPECT_EQ(said.count("kicad.unknown_net"), 1);
-  EXPECT_EQ(said.count("kicad.unknown_layer"), 1);
-  EXPECT_EQ(said.count("kicad.track_off_copper"), 1);
-  EXPECT_EQ(said.count("kicad.via_span"), 1);
-  EXPECT_EQ(said.count("kicad.no_area"), 1);
-}
-
-TEST(KicadReader, HostileNumbersAreErrorsWithALine) {
-  for (const std::string number : {"nan", "inf", "1e300", "9223372036854775808", "1001", "abc", "", "(x)", "\"\""}) {
-    const Error error =
-        error_of(text_of("\n(segment (start 0 0) (end 1 " + number + ") (width 0.1) (layer \"F.Cu\") (net 1))"));
-    EXPECT_TRUE(error.code() == ErrorCode::input_number || error.code() == ErrorCode::file_syntax)
-        << number << ": " << error.what();
-    EXPECT_EQ(error.spot().line, 7) << number << ": " << error.what();
-  }
-  EXPECT_EQ(error_of(text_of("(segment (start 0 0) (end 1 1) (width 1e300) (layer \"F.Cu\") (net 1))")).code(),
-            ErrorCode::input_number);
-  EXPECT_EQ(error_of(text_of("(segment (start 0 0) (end 1 1) (width 1) (layer \"F.Cu\") (net 9223372036854775808))")).code(),
-            ErrorCode::input_number);
-  EXPECT_EQ(error_of(text_of("(via (at 0 0) (size 1) (drill nan) (layers \"F.Cu\" \"B.Cu\") (net 1))")).code(),
-            ErrorCode::input_number);
-  EXPECT_EQ(error_of(text_of("(segment (width 1) (layer \"F.Cu\") (net 1))")).code(), ErrorCode::file_syntax);
-}
-
-TEST(KicadReader, HostileFilesAreErrors) {
-  EXPECT_EQ(error_of("").code(), ErrorCode::file_truncated);
-  EXPECT_EQ(error_of("hello").code(), ErrorCode::file_syntax);
-  EXPECT_EQ(error_of("(footprint \"x\")").code(), ErrorCode::file_syntax);
-  EXPECT_EQ(error_of("(kicad_pcb)").code(), ErrorCode::file_syntax);
-  EXPECT_EQ(error_of("(kicad_pcb (version 3))").code(), ErrorCode::file_syntax);
-  EXPECT_EQ(error_of("(kicad_pcb (version 20241229))").code(), ErrorCode::board_invalid);
-  EXPECT_EQ(error_of("(kicad_pcb (version 20241229) (layers (25 \"Edge.Cuts\" user)))").code(), ErrorCode::board_invalid);
-  EXPECT_EQ(error_of("(kicad_pcb (version 20241229) (layers (0 \"F.Cu\" signal) (0 \"F.Cu\" signal)))").code(),
-            ErrorCode::board_invalid);
-  EXPECT_EQ(error_of(text_of(edge) + ")").code(), ErrorCode::file_syntax);
-  EXPECT_EQ(read_text(text_of("", "20990101")).diagnostics.count("kicad.newer_version"), 1);
-  const auto deep = read("(deep " + std::string(10000, '(') + std::string(10000, ')') + ")" + edge);
-  EXPECT_EQ(deep.board.outlines().size(), 1U);
-  EXPECT_EQ(deep.diagnostics.count("kicad.unknown_construct.deep"), 1);
-}
-
 TEST(KicadReader, SniffsByItsFirstWord) {
   const auto sniff = formats::kicad::board_format.sniff;
   EXPECT_EQ(sniff("(kicad_pcb (version 4)", "x"), formats::Match::yes);
   EXPECT_EQ(sniff("  \n(kicad_pcb", "x"), formats::Match::yes);
   EXPECT_EQ(sniff("(kicad_sch", "x.kicad_sch"), formats::Match::no);
   EXPECT_EQ(sniff("", "x.kicad_pcb"), formats::Match::maybe);
-}
-
-/// Cut and corrupted files must be read or refused, never crash or hang.
-TEST(KicadReader, SurvivesDamagedFiles) {
-  PCBMESH_NEEDS_TEST_DATA();
-  const std::string whole =
-      formats::syntax::read_whole_file(tests::test_data() / "kicad" / "19_edgecases_padstack_4L_v9.kicad_pcb");
-  std::mt19937 random(7);
-  int refused = 0, read_all_the_same = 0;
-  const std::string spice = "()\"|-e9. \n\\";
-  for (int round = 0; round < 400; ++round) {
-    std::string text = whole;
-    if (round % 4 == 0) {
-      text.resize(random() % whole.size());
-    } else {
-      for (int k = 0; k < 1 + round % 5; ++k) text[random() % text.size()] = spice[random() % spice.size()];
-    }
-    try {
-      (void)read_text(text);
-      ++read_all_the_same;
-    } catch (const Error& error) {
-      EXPECT_NE(error.code(), ErrorCode::internal) << error.what();
-      EXPECT_FALSE(error.spot().file.empty()) << error.what();
-      ++refused;
-    }
-  }
-  EXPECT_GT(refused, 100);
-  EXPECT_GT(read_all_the_same, 10);
 }
 
 }  // namespace

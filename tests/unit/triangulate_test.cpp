@@ -465,7 +465,7 @@ TEST(Triangulate, PaperSerpentineHasItsTriangles) {
       drawing.ring(copper, ring);
     }
   }
-  const auto result = run(drawing);
+  const auto result = run(drawing, {.as_in_paper = true});
   double quality = 0, shortest_h = 1e30, sum_h = 0, longest_h = 0;
   for (std::int32_t t = 0; t < result.mesh.num_triangles(); ++t) {
     const auto [a, b, c] = result.mesh.squared_edges_m2(t);

@@ -34,7 +34,7 @@ struct OutputResult {
 /// @throws Error usage (101), write_failed (701).
 void require_writable(const OutputOptions& options, const std::filesystem::path& input);
 
-/// Writes x.tags.json (what each tag means), x.study.json (the resolved study), then the meshes, then judges.
+/// Writes x.tags.json (what each tag means), x.resolved.json (the resolved study), then the meshes, then judges.
 /// The verdict is on the first mesh file that can be read back, else on the mesh expanded in memory.
 /// Every file appears whole or not at all. @throws Error write_failed (701), format_limit (703), cancelled (103).
 [[nodiscard]] OutputResult write_outputs(const MeshBoardResult& result, const OutputOptions& options,
