@@ -12,7 +12,7 @@ namespace pcbmesh::formats::kicad {
 namespace {
 
 /// A drawing of a million overlapping strokes must not hang the reader.
-constexpr std::size_t most_tests = 5'000'000;
+constexpr std::size_t most_tests = 500'000;
 
 /// Clusters of touching drawings, by the smallest drawing in each.
 class Clusters {
@@ -41,14 +41,15 @@ void adopt_nets(Reading& reading) {
   const std::vector<std::size_t>& drawings = reading.loose_drawings;
   if (drawings.empty()) return;
   std::map<std::int32_t, CopperGroup> layers;
-  std::map<std::size_t, std::size_t> rank;  // shape -> its place among the drawings
+  constexpr std::size_t no_drawing = static_cast<std::size_t>(-1);
+  std::vector<std::size_t> rank(shapes.size(), no_drawing);  // shape -> its place among the drawings
   for (std::size_t k = 0; k < drawings.size(); ++k) {
-    rank.emplace(drawings[k], k);
+    rank[drawings[k]] = k;
     layers[shapes[drawings[k]].copper_layer];
   }
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     const auto layer = layers.find(shapes[i].copper_layer);
-    if (layer != layers.end() && (shapes[i].net != board::no_net || rank.contains(i)))
+    if (layer != layers.end() && (shapes[i].net != board::no_net || rank[i] != no_drawing))
       layer->second.add(geometry::bounds(shapes[i].figure), i);
   }
   for (auto& [layer, group] : layers) group.sort();
@@ -63,7 +64,7 @@ void adopt_nets(Reading& reading) {
     layers.at(drawing.copper_layer).any(probe.box, [&](std::size_t index) {
       const board::Shape& other = shapes[index];
       if (other.net == board::no_net) {
-        if (rank.at(index) >= k || clusters.root(rank.at(index)) == clusters.root(k)) return false;
+        if (rank[index] >= k || clusters.root(rank[index]) == clusters.root(k)) return false;
       } else if (nets[k].contains(other.net)) {
         return false;
       }
@@ -72,7 +73,7 @@ void adopt_nets(Reading& reading) {
       if (!(is_fill ? test.touches_fill(probe, index, other.figure) : TouchTest::touches(probe, {&other.figure, 1})))
         return false;
       if (other.net == board::no_net)
-        clusters.join(k, rank.at(index));
+        clusters.join(k, rank[index]);
       else
         nets[k].insert(other.net);
       return false;

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "formats/kicad/loop_nesting.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
+
+#include "pcbmesh/base/error.hpp"
 
 namespace pcbmesh::formats::kicad {
 namespace {
@@ -68,7 +72,8 @@ void warn_crossing(Reading& reading, const std::vector<EdgePiece>& loops, const 
 }  // namespace
 
 void report_crossings(Reading& reading, const std::vector<EdgePiece>& loops) {
-  constexpr std::size_t most_comparisons = 200'000'000;
+  constexpr std::size_t most_comparisons = 50'000'000;
+  constexpr std::int64_t most_crossings = 1000;
   std::vector<Edge> edges;
   for (std::size_t i = 0; i < loops.size(); ++i) {
     const Ring ring = geometry::flatten(loops[i].path, {});
@@ -86,8 +91,11 @@ void report_crossings(Reading& reading, const std::vector<EdgePiece>& loops) {
     const Edge& e = edges[i];
     std::erase_if(active, [&](std::size_t k) { return edges[k].b.x < e.a.x; });
     comparisons += active.size();
-    if (comparisons > most_comparisons) {
-      reading.diagnostics.note("kicad.outline_not_checked", "the board outline has too many edges to look for crossings");
+    const std::int64_t crossings =
+        reading.diagnostics.count("kicad.outline_crosses_itself") + reading.diagnostics.count("kicad.outlines_cross");
+    if (comparisons > most_comparisons || crossings > most_crossings) {
+      reading.diagnostics.note("kicad.outline_not_checked",
+                               "the board outline has too many edges or crossings to look for more of them");
       return;
     }
     const auto [low, high] = std::minmax(e.a.y, e.b.y);
@@ -100,7 +108,9 @@ void report_crossings(Reading& reading, const std::vector<EdgePiece>& loops) {
   }
 }
 
-std::vector<board::Outline> nest(std::vector<EdgePiece> pieces) {
+std::vector<board::Outline> nest(const Reading& reading, std::vector<EdgePiece> pieces) {
+  constexpr std::size_t most_work = 1'000'000'000;
+  std::size_t work = 0;
   constexpr geometry::ArcOptions fine{.sagitta_nm = nm_per_um};
   std::vector<Loop> loops(pieces.size());
   std::vector<std::size_t> order(pieces.size());
@@ -116,6 +126,13 @@ std::vector<board::Outline> nest(std::vector<EdgePiece> pieces) {
   for (std::size_t k = 0; k < order.size(); ++k) {
     const std::size_t i = order[k];
     std::erase_if(active, [&](std::size_t j) { return loops[j].box.max.x < loops[i].box.min.x; });
+    for (const std::size_t j : active)
+      work += 1 + (loops[j].box.touches(loops[i].box) ? loops[j].ring.size() + loops[i].ring.size() : 0);
+    if (work > most_work)
+      throw Error(
+          ErrorCode::outline_invalid,
+          fmt::format("{} closed loops on Edge.Cuts overlap too much to be told apart; is this a board edge?", loops.size()),
+          {.file = reading.tree.file(), .line = pieces[i].line, .layer = "Edge.Cuts"});
     for (const std::size_t j : active) {
       const std::size_t big = loops[j].area > loops[i].area || (loops[j].area == loops[i].area && j < i) ? j : i;
       const std::size_t small = big == j ? i : j;

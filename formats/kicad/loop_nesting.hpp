@@ -14,6 +14,7 @@ void report_crossings(Reading& reading, const std::vector<EdgePiece>& loops);
 
 /// Boards and their cut-outs: a loop inside an even number of others is a board, inside an odd number a cut-out of the
 /// smallest board around it. Boards in order of their first piece in the file.
-[[nodiscard]] std::vector<board::Outline> nest(std::vector<EdgePiece> loops);
+/// @throws Error outline_invalid (302) if hundreds of thousands of loops overlap each other.
+[[nodiscard]] std::vector<board::Outline> nest(const Reading& reading, std::vector<EdgePiece> loops);
 
 }  // namespace pcbmesh::formats::kicad

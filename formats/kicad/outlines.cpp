@@ -181,7 +181,7 @@ void read_outlines(Reading& reading) {
     return;
   }
   report_crossings(reading, loops);
-  reading.parts.outlines = nest(std::move(loops));
+  reading.parts.outlines = nest(reading, std::move(loops));
 }
 
 }  // namespace pcbmesh::formats::kicad

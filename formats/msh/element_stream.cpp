@@ -10,6 +10,8 @@
 namespace pcbmesh::formats::msh {
 namespace {
 
+constexpr std::size_t triangles_at_once = 512;
+
 std::size_t index(std::int32_t i) {
   return static_cast<std::size_t>(i);
 }
@@ -184,35 +186,74 @@ void ElementStream::visit_walls(std::int32_t tag_index, Rows& rows) const {
 }
 
 void ElementStream::visit_wedges(std::int32_t tag_index, Rows& rows) {
+  const auto corners = mesh_.planar().triangles();
+  std::vector<std::array<std::int32_t, 3>> part;
   for (const std::int32_t slab : slabs_of_tag_[index(tag_index)]) {
-    const auto triangles = triangles_of(slab, tag_index);
-    const std::int32_t last = mesh_.plan().first_sublayer(slab + 1);
-    for (std::int32_t k = mesh_.plan().first_sublayer(slab); k < last; ++k) visit_sublayer(k, triangles, rows);
+    auto triangles = triangles_of(slab, tag_index);
+    const std::int32_t begin = mesh_.plan().first_sublayer(slab), end = mesh_.plan().first_sublayer(slab + 1);
+    // Levels strictly inside a slab hold the same vertices: one table serves them all.
+    const std::span<const std::int32_t> bottom = ranks_of(begin), top = ranks_of(end);
+    const std::span<const std::int32_t> inside = end - begin > 1 ? ranks_of(begin + 1) : bottom;
+    // A few triangles through all sub-layers, then the next few: the plane is fetched once per slab, not once per sub-layer.
+    while (!triangles.empty()) {
+      const auto few = triangles.first(std::min(triangles.size(), triangles_at_once));
+      triangles = triangles.subspan(few.size());
+      part.clear();
+      for (const std::int32_t t : few) part.push_back(corners[index(t)]);
+      for (std::int32_t k = begin; k < end; ++k)
+        visit_sublayer(k, part, k == begin ? bottom : inside, k + 1 == end ? top : inside, rows);
+    }
   }
 }
 
-void ElementStream::visit_sublayer(std::int32_t sublayer, std::span<const std::int32_t> triangles, Rows& rows) const {
-  const auto corners = mesh_.planar().triangles();
-  const std::int64_t low = mesh_.first_node_of_level(sublayer), high = mesh_.first_node_of_level(sublayer + 1);
-  const std::int64_t num_points = mesh_.planar().num_points();
-  const bool low_is_full = mesh_.num_nodes_of_level(sublayer) == num_points;
-  const bool high_is_full = mesh_.num_nodes_of_level(sublayer + 1) == num_points;
-  for (std::size_t done = 0; done < triangles.size();) {
-    const auto out = rows.room(triangles.size() - done);
-    std::int64_t* to = out.data();
-    const std::size_t count = out.size() / 6;
-    for (const std::int32_t t : triangles.subspan(done, count)) {
-      const auto& triangle = corners[index(t)];
-      // Levels without gaps number their nodes like the plane does: no look-up.
-      for (std::size_t i = 0; i < 3; ++i) {
-        to[i] = low_is_full ? low + triangle[i] : mesh_.node_id(sublayer, triangle[i]);
-        to[i + 3] = high_is_full ? high + triangle[i] : mesh_.node_id(sublayer + 1, triangle[i]);
+void ElementStream::visit_sublayer(std::int32_t sublayer, std::span<const std::array<std::int32_t, 3>> triangles,
+                                   std::span<const std::int32_t> low_ranks, std::span<const std::int32_t> high_ranks,
+                                   Rows& rows) const {
+  const auto write = [&](auto low, auto high) {
+    for (auto rest = triangles; !rest.empty();) {
+      const auto out = rows.room(rest.size());
+      const std::size_t count = out.size() / 6;
+      std::int64_t* to = out.data();
+      for (const auto& [a, b, c] : rest.first(count)) {
+        to[0] = low(a), to[1] = low(b), to[2] = low(c);
+        to[3] = high(a), to[4] = high(b), to[5] = high(c);
+        to += 6;
       }
-      to += 6;
+      rows.advance(count);
+      rest = rest.subspan(count);
     }
-    rows.advance(count);
-    done += count;
+  };
+  // Levels without gaps number their nodes like the plane does: no look-up.
+  const auto plain = [&](std::int32_t level) {
+    return [first = mesh_.first_node_of_level(level)](std::int32_t v) { return first + v; };
+  };
+  const auto ranked = [&](std::int32_t level, std::span<const std::int32_t> ranks) {
+    return [first = mesh_.first_node_of_level(level), at = ranks.data()](std::int32_t v) { return first + at[index(v)]; };
+  };
+  if (low_ranks.empty() && high_ranks.empty())
+    write(plain(sublayer), plain(sublayer + 1));
+  else if (low_ranks.empty())
+    write(plain(sublayer), ranked(sublayer + 1, high_ranks));
+  else if (high_ranks.empty())
+    write(ranked(sublayer, low_ranks), plain(sublayer + 1));
+  else
+    write(ranked(sublayer, low_ranks), ranked(sublayer + 1, high_ranks));
+}
+
+std::span<const std::int32_t> ElementStream::ranks_of(std::int32_t level) {
+  const std::int32_t num_points = mesh_.planar().num_points();
+  if (mesh_.num_nodes_of_level(level) == num_points) return {};
+  auto entry = std::ranges::find(level_ranks_, level, &LevelRanks::level);
+  if (entry == level_ranks_.end()) {
+    entry = std::ranges::min_element(level_ranks_, {}, &LevelRanks::last_use);
+    entry->level = level;
+    entry->ranks.resize(index(num_points));
+    // Ids ascend with the vertex: counting is cheaper than asking for each.
+    std::int32_t rank = 0;
+    for (std::int32_t v = 0; v < num_points; ++v) entry->ranks[index(v)] = mesh_.has_node(level, v) ? rank++ : -1;
   }
+  entry->last_use = ++clock_;
+  return entry->ranks;
 }
 
 std::span<const std::int32_t> ElementStream::triangles_of(std::int32_t slab, std::int32_t tag_index) {

@@ -43,9 +43,11 @@ struct Group {
 };
 
 /// Boundary faces, then prisms of an implicit mesh, block by block in file order; never holds the 3D mesh.
-/// Faces are oriented outwards, seen from the meshed side.
+/// Faces are oriented outwards, seen from the meshed side. Prisms of a tag come slab by slab, a few triangles through all its
+/// sub-layers at a time.
 ///
-/// @cost memory O(regions x slabs) + triangle lists of slabs: at most `cache_bytes`, but always room for two.
+/// @cost memory O(regions x slabs) + triangle lists of slabs: at most `cache_bytes`, but always room for two; with voids
+/// also 12 bytes per vertex of the plane.
 class ElementStream {
  public:
   explicit ElementStream(const mesh::PrismMesh& mesh, std::size_t cache_bytes = std::size_t{32} << 20);
@@ -60,7 +62,7 @@ class ElementStream {
   /// Corners (node ids from 0), num_corners(kind) per element; at most `chunk` elements a call.
   using Visit = std::function<void(std::span<const std::int64_t> corners)>;
   void visit(const ElementBlock& block, const Visit& visit);
-  static constexpr std::size_t chunk = 1024;
+  static constexpr std::size_t chunk = 256;  ///< rows stay in the first-level cache
 
  private:
   struct SlabGroups {
@@ -68,13 +70,21 @@ class ElementStream {
     std::uint64_t last_use = 0;
     std::vector<std::int32_t> offsets, triangles;
   };
+  struct LevelRanks {
+    std::int32_t level = -1;
+    std::uint64_t last_use = 0;
+    std::vector<std::int32_t> ranks;
+  };
   class Rows;
   void survey_volumes();
   void survey_faces();
   void visit_caps(std::int32_t tag_index, Rows& rows) const;
   void visit_walls(std::int32_t tag_index, Rows& rows) const;
   void visit_wedges(std::int32_t tag_index, Rows& rows);
-  void visit_sublayer(std::int32_t sublayer, std::span<const std::int32_t> triangles, Rows& rows) const;
+  void visit_sublayer(std::int32_t sublayer, std::span<const std::array<std::int32_t, 3>> triangles,
+                      std::span<const std::int32_t> low_ranks, std::span<const std::int32_t> high_ranks, Rows& rows) const;
+  /// Node ids of a level by vertex, minus the level's first id; empty if they are the vertices themselves.
+  [[nodiscard]] std::span<const std::int32_t> ranks_of(std::int32_t level);
   [[nodiscard]] std::span<const std::int32_t> triangles_of(std::int32_t slab, std::int32_t tag_index);
 
   mesh::PrismMesh mesh_;
@@ -83,6 +93,7 @@ class ElementStream {
   std::int64_t num_elements_ = 0;
   std::vector<std::vector<std::int32_t>> slabs_of_tag_;
   std::vector<SlabGroups> cache_;
+  std::array<LevelRanks, 3> level_ranks_;  ///< bottom, inside and top of the slab that is being written
   std::size_t max_cached_ = 2;
   std::uint64_t clock_ = 0;
 };

@@ -65,7 +65,7 @@ class FileSink {
   /// Makes the file appear under its name. @throws Error write_failed (701); the old file is then still there.
   void commit();
 
-  static constexpr std::size_t buffer_size = 512 * 1024;
+  static constexpr std::size_t buffer_size = 256 * 1024;
   static constexpr std::size_t max_room = buffer_size;
   static constexpr std::size_t max_number_text = 32;  ///< longest shortest-form double has 24 characters
 

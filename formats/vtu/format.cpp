@@ -78,9 +78,10 @@ void Writer::write_header() const {
       sink_.put(fmt::format("   <{}>\n", array.section));
       open = array.section;
     }
-    sink_.put(
-        fmt::format("    <DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" offset=\"{}\"/>\n",
-                    array.type, array.name, array.num_components, array.offset));
+    sink_.put(fmt::format("    <DataArray type=\"{}\" Name=\"{}\"", array.type, array.name));
+    // Left out where it is 1: meshio else makes columns of what are plain arrays.
+    if (array.num_components > 1) sink_.put(fmt::format(" NumberOfComponents=\"{}\"", array.num_components));
+    sink_.put(fmt::format(" format=\"appended\" offset=\"{}\"/>\n", array.offset));
   }
   sink_.put(fmt::format("   </{}>\n  </Piece>\n </UnstructuredGrid>\n <AppendedData encoding=\"raw\">\n_", open));
 }

@@ -9,6 +9,9 @@
 namespace pcbmesh::overlay {
 namespace {
 
+/// Cosine of 15 degrees.
+constexpr double needle_cosine = 0.96593;
+
 struct Wedge {
   double cosine;                       ///< of the angle; larger is sharper
   std::int32_t vertex, first, second;  ///< second is counter-clockwise of first
@@ -106,13 +109,17 @@ class Blunter {
     const double first_length = distance(at, noder_.points()[ix(first_end)]),
                  second_length = distance(at, noder_.points()[ix(second_end)]);
     const double half_sine = std::sqrt(std::max(0.0, (1 - wedge.cosine) / 2));
+    // A needle is worth going nearer to a neck, but never within the tolerance of closing it.
+    guard_ = wedge.cosine > needle_cosine ? 1.0 : 2.0;
     const double run = limits_.width_nm / (2 * half_sine);
     const double least = run + static_cast<double>(noder_.tolerance());
     if (std::min(first_length, second_length) >= least) {
+      // The stiffer, else the longer edge keeps its place if it can.
       const int first_stiff = noder_.stiffness(first), second_stiff = noder_.stiffness(second);
-      if (first_stiff > 0 && second_stiff > 0) return false;
       const bool keep_first = first_stiff != second_stiff ? first_stiff > second_stiff : first_length >= second_length;
-      return run_together(wedge, keep_first, run);
+      if ((keep_first ? second_stiff : first_stiff) > 0) return false;
+      if (run_together(wedge, keep_first, run)) return true;
+      return (keep_first ? first_stiff : second_stiff) == 0 && run_together(wedge, !keep_first, run);
     }
     return route_by_end(wedge, first_length > second_length);
   }
@@ -164,9 +171,14 @@ class Blunter {
   bool is_safe(std::int32_t v, std::int32_t keep_label, std::int32_t move_label, std::int32_t move_id, Point keep_to,
                Point move_to) {
     LabelPool& labels = noder_.labels();
+    const Edge& move = noder_.edges()[ix(move_id)];
+    const std::int32_t move_end = move.u == v ? move.v : move.u;
     pairs_.clear();
     conductors_.pairs_across(labels, labels.add(keep_label, move_label), pairs_);
     if (!pairs_.empty()) return false;
+    for (const Increment& in : labels.entries(move_label)) {
+      if (std::ranges::binary_search(limits_.spared, in.body)) return false;
+    }
     // A body whose outline both edges are has its tip in the wedge; it loses or gains only that.
     bodies_.clear();
     for (const Increment& in : labels.entries(move_label)) {
@@ -175,13 +187,14 @@ class Blunter {
     if (bodies_.empty()) return true;
     const Point at = noder_.points()[ix(v)];
     const int move_side = turn(at, keep_to, move_to);
-    const double reach = 2 * limits_.width_nm;
+    const double reach = guard_ * limits_.width_nm;
     bool safe = true;
     grid_.along_segment(at, keep_to, reach, [&](std::int32_t first, std::int32_t last) {
       for (const std::int32_t e : lists_.items(first, last)) {
         if (!safe) return;
         const Edge& other = noder_.edges()[ix(e)];
-        if (e == move_id || other.u == v || other.v == v) continue;
+        // What goes on from the ends of the edge that gives way is the same side of the body, no neck.
+        if (e == move_id || other.u == v || other.v == v || other.u == move_end || other.v == move_end) continue;
         const Point p = noder_.points()[ix(other.u)], q = noder_.points()[ix(other.v)];
         if (turn(at, keep_to, p) * move_side >= 0 && turn(at, keep_to, q) * move_side >= 0) continue;
         const double near2 = std::min({segment_distance2(p, at, keep_to), segment_distance2(q, at, keep_to),
@@ -194,7 +207,7 @@ class Blunter {
   }
 
   Noder& noder_;
-  BluntLimits limits_;
+  const BluntLimits& limits_;
   const Conductors& conductors_;
   std::vector<std::uint8_t> removed_;
   std::vector<Edge> added_;
@@ -202,6 +215,7 @@ class Blunter {
   CellLists lists_;
   std::vector<NetPair> pairs_;
   std::vector<std::int32_t> bodies_;
+  double guard_ = 2;
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "src/overlay/census.hpp"
 #include "src/overlay/noding.hpp"
@@ -11,6 +12,7 @@ namespace pcbmesh::overlay {
 struct BluntLimits {
   double angle_deg = 30;
   double width_nm = 0;
+  std::vector<std::int32_t> spared;  ///< bodies whose outlines are left alone, ascending
 };
 
 /// Two edges that leave a vertex at a smaller angle run together until they are `width` apart; needle tips of one body cancel

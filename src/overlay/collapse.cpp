@@ -31,12 +31,16 @@ struct Chain {
   bool closed = false;
 };
 
+/// Ordered by place where deviations are equal, so that equal outlines of two sheets shrink alike.
 struct Candidate {
   double deviation;
+  Point low, high;
   std::int32_t link;
   std::uint32_t stamp;
   bool operator<(const Candidate& other) const {
-    return deviation != other.deviation ? deviation > other.deviation : link > other.link;
+    if (deviation != other.deviation) return deviation > other.deviation;
+    if (low != other.low) return low > other.low;
+    return high != other.high ? high > other.high : link > other.link;
   }
 };
 
@@ -49,28 +53,23 @@ struct Plan {
 
 class Collapser {
  public:
-  Collapser(const EdgeGraph& graph, const std::vector<std::uint8_t>& fixed, const CollapseLimits& limits,
+  Collapser(const EdgeGraph& graph, const std::vector<std::uint8_t>& marks, const CollapseLimits& limits,
             const Progress& progress)
       : points_(graph.points),
         limits_(limits),
         progress_(progress),
         grid_(box_of(graph.points, graph.edges), graph.edges.size(), static_cast<Nm>(limits.deviation_nm) + 1),
         head_(ix(grid_.num_cells()), -1) {
-    make_chains(graph, fixed);
+    make_chains(graph, marks);
     for (std::size_t k = 0; k < links_.size(); ++k) insert(static_cast<std::int32_t>(k));
   }
 
   EdgeGraph run(LabelPool& labels) {
-    for (std::size_t k = 0; k < links_.size(); ++k) consider(static_cast<std::int32_t>(k));
-    std::size_t steps = 0;
-    while (!queue_.empty()) {
-      if (++steps % 4096 == 0) progress_.check();
-      const Candidate candidate = queue_.top();
-      queue_.pop();
-      const Link& link = links_[ix(candidate.link)];
-      if (!link.alive || link.stamp != candidate.stamp) continue;
-      const Plan plan = planned(candidate.link);
-      if (plan.deviation <= limits_.deviation_nm && is_clear(candidate.link, plan)) apply(candidate.link, plan);
+    // First what sheets have in common, the same way on each; then across the ends of that.
+    for (hold_run_ends_ = true;; hold_run_ends_ = false) {
+      for (std::size_t k = 0; k < links_.size(); ++k) consider(static_cast<std::int32_t>(k));
+      drain();
+      if (!hold_run_ends_) break;
     }
     EdgeGraph result{std::move(points_), {}};
     for (const Link& link : links_) {
@@ -81,11 +80,24 @@ class Collapser {
   }
 
  private:
+  void drain() {
+    std::size_t steps = 0;
+    while (!queue_.empty()) {
+      if (++steps % 4096 == 0) progress_.check();
+      const Candidate candidate = queue_.top();
+      queue_.pop();
+      const Link& link = links_[ix(candidate.link)];
+      if (!link.alive || link.stamp != candidate.stamp) continue;
+      const Plan plan = planned(candidate.link);
+      if (plan.deviation <= limits_.deviation_nm && is_clear(candidate.link, plan)) apply(candidate.link, plan);
+    }
+  }
+
   struct Entry {
     std::int32_t link, next;
   };
 
-  void make_chains(const EdgeGraph& graph, const std::vector<std::uint8_t>& fixed);
+  void make_chains(const EdgeGraph& graph, const std::vector<std::uint8_t>& marks);
   void walk(const EdgeGraph& graph, std::int32_t start_vertex, std::int32_t start_edge, std::vector<std::uint8_t>& seen);
   void insert(std::int32_t link);
   void consider(std::int32_t link);
@@ -110,10 +122,11 @@ class Collapser {
   std::vector<std::int32_t> head_;  ///< per cell: first entry or -1
   std::vector<Entry> entries_;
   std::priority_queue<Candidate> queue_;
-  std::vector<std::uint8_t> soft_;
+  std::vector<std::uint8_t> soft_, run_end_;
+  bool hold_run_ends_ = false;
 };
 
-void Collapser::make_chains(const EdgeGraph& graph, const std::vector<std::uint8_t>& fixed) {
+void Collapser::make_chains(const EdgeGraph& graph, const std::vector<std::uint8_t>& marks) {
   const std::size_t num_points = graph.points.size();
   offsets_.assign(num_points + 1, 0);
   for (const Edge& e : graph.edges) ++offsets_[ix(e.u) + 1], ++offsets_[ix(e.v) + 1];
@@ -126,7 +139,9 @@ void Collapser::make_chains(const EdgeGraph& graph, const std::vector<std::uint8
   }
   // Two edges at a vertex carry the same label through it, or windings would not close.
   soft_.resize(num_points);
-  for (std::size_t v = 0; v < num_points; ++v) soft_[v] = offsets_[v + 1] - offsets_[v] == 2 && !fixed[v];
+  for (std::size_t v = 0; v < num_points; ++v) soft_[v] = offsets_[v + 1] - offsets_[v] == 2 && marks[v] != fixed_point;
+  run_end_.resize(num_points);
+  for (std::size_t v = 0; v < num_points; ++v) run_end_[v] = marks[v] == run_end;
   std::vector<std::uint8_t> seen(graph.edges.size(), 0);
   links_.reserve(graph.edges.size());
   for (std::size_t v = 0; v < num_points; ++v) {
@@ -194,8 +209,12 @@ void Collapser::consider(std::int32_t link) {
   Link& middle = links_[ix(link)];
   ++middle.stamp;
   if (!middle.alive || middle.previous < 0 || middle.next < 0) return;
+  if (hold_run_ends_ && (run_end_[ix(middle.u)] || run_end_[ix(middle.v)])) return;
   const Plan plan = planned(link);
-  if (plan.deviation <= limits_.deviation_nm) queue_.push({plan.deviation, link, middle.stamp});
+  if (plan.deviation > limits_.deviation_nm) return;
+  const Point b = points_[ix(middle.u)], c = points_[ix(middle.v)];
+  // Nanometre noise must not decide: the two directions of a chain differ by that much.
+  queue_.push({std::floor(plan.deviation / 4), std::min(b, c), std::max(b, c), link, middle.stamp});
 }
 
 bool Collapser::place_corner(Point a, Point b, Point c, Point d, Plan& plan) const {
@@ -360,10 +379,10 @@ void Collapser::apply(std::int32_t link, const Plan& plan) {
 
 }  // namespace
 
-EdgeGraph collapse(const EdgeGraph& graph, const std::vector<std::uint8_t>& fixed, const CollapseLimits& limits,
+EdgeGraph collapse(const EdgeGraph& graph, const std::vector<std::uint8_t>& marks, const CollapseLimits& limits,
                    LabelPool& labels, const Progress& progress) {
   if (graph.edges.empty() || limits.deviation_nm <= 0) return graph;
-  return Collapser(graph, fixed, limits, progress).run(labels);
+  return Collapser(graph, marks, limits, progress).run(labels);
 }
 
 }  // namespace pcbmesh::overlay

@@ -313,8 +313,11 @@ void Noder::resolve_crossings(std::vector<Pair>& crossing, std::vector<Split>& f
     const Point a = points_[ix(e.u)], b = points_[ix(e.v)], c = points_[ix(f.u)], d = points_[ix(f.v)];
     const Point x = crossing_point(a, b, c, d);
     // An end that near is the crossing: no new vertex is needed.
+    // On the bare grid two nearly parallel edges would creep along each other, a nanometre a pass: rounding the crossing bends
+    // them, and they cross again. So there an end within two nanometres, more the longer it takes, counts as the crossing.
     const std::int32_t ends[4] = {e.u, e.v, f.u, f.v};
-    double best = tolerance2_;
+    const double creep = 2.0 + counts_.num_passes / 16;
+    double best = tolerance_ > 0 ? tolerance2_ : creep * creep;
     int nearest = -1;
     for (int k = 0; k < 4; ++k) {
       const double d2 = distance2(x, points_[ix(ends[k])]);

@@ -34,6 +34,12 @@ Nm first_tolerance(const model::Model& model, const OverlayOptions& options) {
   return std::max(tolerance, least_tolerance);
 }
 
+/// One try: the tolerance, and the bodies that an earlier try showed to be too delicate for blunting.
+struct Attempt {
+  Nm tolerance_nm = 0;
+  std::vector<std::int32_t> spared;
+};
+
 struct Cleaned {
   EdgeGraph graph;
   Faces faces;
@@ -41,21 +47,21 @@ struct Cleaned {
   Census census;
 };
 
-Cleaned clean(const Sheets& sheets, const OverlayOptions& options, Nm tolerance, LabelPool& labels,
+Cleaned clean(const Sheets& sheets, const OverlayOptions& options, const Attempt& attempt, LabelPool& labels,
               const Conductors& conductors, const Progress& progress) {
-  const double tol = static_cast<double>(tolerance);
+  const double tol = static_cast<double>(attempt.tolerance_nm);
   const CollapseLimits limits{options.simplify_over_tolerance * tol, tol / 40};
   std::vector<EdgeGraph> simplified;
   for (std::size_t s = 0; s < sheets.sheets.size(); ++s) {
     progress.at("simplification", static_cast<double>(s) / static_cast<double>(sheets.sheets.size()));
-    simplified.push_back(collapse(sheets.sheets[s].outlines, sheets.sheets[s].fixed, limits, labels, progress));
+    simplified.push_back(collapse(sheets.sheets[s].outlines, sheets.sheets[s].marks, limits, labels, progress));
   }
   std::vector<const EdgeGraph*> graphs;
   for (const EdgeGraph& graph : simplified) graphs.push_back(&graph);
   progress.at("snapping", 0);
-  Noder noder(overlaid(graphs, labels), labels, tolerance, progress);
+  Noder noder(overlaid(graphs, labels), labels, attempt.tolerance_nm, progress);
   noder.settle();
-  const BluntLimits tips{options.blunt_angle_deg, options.blunt_width_over_tolerance * tol};
+  const BluntLimits tips{options.blunt_angle_deg, options.blunt_width_over_tolerance * tol, attempt.spared};
   for (int round = 0; round < most_blunt_rounds; ++round) {
     progress.at("snapping", 0.4 + 0.1 * round);
     if (blunt(noder, tips, conductors) == 0) break;
@@ -143,61 +149,128 @@ void measure_areas(const model::Model& model, const Sheets& sheets, const std::v
   statistics.total_area_error = total_before > 0 ? (total_after - total_before) / total_before : 0;
 }
 
+/// Bodies a mismatch is about.
+std::vector<std::int32_t> bodies_of(const Mismatch& mismatch, const model::Model& model) {
+  std::vector<std::int32_t> bodies;
+  for (std::size_t b = 2; b < model.bodies().size(); ++b) {
+    const std::int32_t net = model.bodies()[b].net;
+    const bool named = mismatch.nets && (net == (*mismatch.nets)[0] || net == (*mismatch.nets)[1]);
+    if (named || static_cast<std::int32_t>(b) == mismatch.body) bodies.push_back(static_cast<std::int32_t>(b));
+  }
+  return bodies;
+}
+
+/// The next try after a failed one; nullopt when none is left. Blunting is given up for the bodies concerned first, since
+/// that costs the rest of the board nothing.
+std::optional<Attempt> next_attempt(const Attempt& last, Nm first_tolerance_nm, const std::optional<Mismatch>& mismatch,
+                                    const model::Model& model) {
+  if (mismatch && last.spared.size() < 64) {
+    Attempt again = last;
+    for (const std::int32_t body : bodies_of(*mismatch, model)) {
+      if (!std::ranges::binary_search(last.spared, body)) again.spared.push_back(body);
+    }
+    std::ranges::sort(again.spared);
+    if (again.spared.size() > last.spared.size()) return again;
+  }
+  const Nm three_quarters = first_tolerance_nm * 3 / 4;
+  const Nm smaller = last.tolerance_nm == first_tolerance_nm ? three_quarters
+                     : last.tolerance_nm == three_quarters   ? first_tolerance_nm / 2
+                                                             : last.tolerance_nm / 2;
+  if (smaller >= least_tolerance) return Attempt{smaller, {}};
+  // The last resort is the least tolerance itself, unless a smaller one was asked for from the start.
+  if (last.tolerance_nm > least_tolerance) return Attempt{least_tolerance, {}};
+  return std::nullopt;
+}
+
+OverlayResult finished(const model::Model& model, const Sheets& sheets, const Census& reference, const Cleaned& cleaned,
+                       const Attempt& attempt, int num_attempts, const LabelPool& labels, const Progress& progress) {
+  const std::vector<double> area_mm2 = areas_mm2(cleaned.graph, labels, model.bodies().size());
+  OverlayResult result{to_planar_graph(cleaned.graph, labels),
+                       make_ledger(model, sheets, cleaned.graph, area_mm2, labels, attempt.tolerance_nm, progress),
+                       {},
+                       reference.pieces,
+                       {}};
+  for (const NetPair& pair : reference.touching) {
+    if (pair[0] >= 0) result.touching_nets.push_back(pair);
+  }
+  result.statistics.tolerance_nm = attempt.tolerance_nm;
+  result.statistics.attempts = num_attempts;
+  result.statistics.num_input_vertices = sheets.num_input_vertices;
+  result.statistics.num_snapped = cleaned.counts.num_snapped;
+  result.statistics.num_crossings = cleaned.counts.num_crossings;
+  result.statistics.num_passes = cleaned.counts.num_passes;
+  measure_areas(model, sheets, area_mm2, result.statistics);
+  return result;
+}
+
+/// What a series of attempts came to.
+struct Outcome {
+  std::optional<OverlayResult> result;  ///< agrees with the reference; empty if no attempt did
+  std::optional<Error> failure;         ///< of the last attempt that failed
+  std::optional<Census> finest;         ///< of the last attempt: the layout as the least tolerance shows it
+  int num_attempts = 0;
+};
+
+Outcome attempt_all(Nm tolerance_nm, int num_before, const Sheets& sheets, const Census& reference,
+                    const OverlayOptions& options, LabelPool& labels, const Conductors& conductors, Diagnostics& diagnostics,
+                    const Progress& progress) {
+  Outcome outcome;
+  outcome.num_attempts = num_before;
+  for (std::optional<Attempt> attempt = Attempt{tolerance_nm, {}}; attempt;) {
+    ++outcome.num_attempts;
+    std::optional<Mismatch> mismatch;
+    try {
+      Cleaned cleaned = clean(sheets, options, *attempt, labels, conductors, progress);
+      progress.at("verification", 0);
+      mismatch = compare(reference, cleaned.census, conductors.model());
+      if (!mismatch) {
+        outcome.result =
+            finished(conductors.model(), sheets, reference, cleaned, *attempt, outcome.num_attempts, labels, progress);
+        return outcome;
+      }
+      const Spot spot = locate(*mismatch, sheets, cleaned, labels, conductors, progress);
+      outcome.failure.emplace(
+          ErrorCode::overlay_topology,
+          mismatch->text +
+              "; the layout has a gap or a neck there that is too small to be meshed: widen it, or give a smaller tolerance",
+          spot);
+      diagnostics.note("overlay.retry", fmt::format("tolerance {}: {}", format_length(attempt->tolerance_nm), mismatch->text),
+                       spot);
+      outcome.finest = std::move(cleaned.census);
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::overlay_no_fixpoint) throw;
+      diagnostics.note("overlay.retry", fmt::format("tolerance {}: {}", format_length(attempt->tolerance_nm), error.text()),
+                       error.spot());
+      outcome.failure = error;
+      outcome.finest.reset();
+    }
+    attempt = next_attempt(*attempt, tolerance_nm, mismatch, conductors.model());
+  }
+  return outcome;
+}
+
 }  // namespace
 
 OverlayResult overlay(const model::Model& model, const OverlayOptions& options, Diagnostics& diagnostics,
                       const Progress& progress) {
-  const Nm tolerance = first_tolerance(model, options);
+  const Nm tolerance_nm = first_tolerance(model, options);
   LabelPool labels;
   const Conductors conductors(model);
   const Sheets sheets = make_sheets(model, labels, conductors, diagnostics, progress);
-  std::vector<Nm> tolerances{tolerance, tolerance * 3 / 4};
-  for (Nm smaller = tolerance / 2; smaller >= least_tolerance; smaller /= 2) tolerances.push_back(smaller);
-  std::optional<Error> failure;
-  for (std::size_t attempt = 0; attempt < tolerances.size(); ++attempt) {
-    if (attempt > 0 && tolerances[attempt] < least_tolerance) continue;
-    Cleaned cleaned;
-    try {
-      cleaned = clean(sheets, options, tolerances[attempt], labels, conductors, progress);
-    } catch (const Error& error) {
-      if (error.code() != ErrorCode::overlay_no_fixpoint) throw;
-      diagnostics.note("overlay.retry", fmt::format("tolerance {}: {}", format_length(tolerances[attempt]), error.text()),
-                       error.spot());
-      failure = error;
-      continue;
-    }
-    progress.at("verification", 0);
-    if (const auto mismatch = compare(sheets.exact, cleaned.census, model)) {
-      const Spot spot = locate(*mismatch, sheets, cleaned, labels, conductors, progress);
-      diagnostics.note("overlay.retry", fmt::format("tolerance {}: {}", format_length(tolerances[attempt]), mismatch->text),
-                       spot);
-      failure.emplace(
-          ErrorCode::overlay_topology,
-          mismatch->text +
-              "; the layout has a gap or a neck too small to be meshed, look at this place or give a smaller tolerance",
-          spot);
-      continue;
-    }
-    const std::vector<double> area_mm2 = areas_mm2(cleaned.graph, labels, model.bodies().size());
-    OverlayResult result{to_planar_graph(cleaned.graph, labels),
-                         make_ledger(model, sheets, cleaned.graph, area_mm2, labels, tolerances[attempt], progress),
-                         {},
-                         sheets.exact.pieces,
-                         {}};
-    for (const NetPair& pair : sheets.exact.touching) {
-      if (pair[0] >= 0) result.touching_nets.push_back(pair);
-    }
-    result.statistics.tolerance_nm = tolerances[attempt];
-    result.statistics.attempts = static_cast<int>(attempt) + 1;
-    result.statistics.num_input_vertices = sheets.num_input_vertices;
-    result.statistics.num_snapped = cleaned.counts.num_snapped;
-    result.statistics.num_crossings = cleaned.counts.num_crossings;
-    result.statistics.num_passes = cleaned.counts.num_passes;
-    measure_areas(model, sheets, area_mm2, result.statistics);
-    progress.at("verification", 1);
-    return result;
-  }
-  throw failure.value();
+  Outcome strict = attempt_all(tolerance_nm, 0, sheets, sheets.exact, options, labels, conductors, diagnostics, progress);
+  if (strict.result) return std::move(*strict.result);
+  if (!strict.finest || strict.finest->touching != sheets.exact.touching) throw strict.failure.value();
+
+  // Layouts hold necks and gaps of a fraction of a micrometre inside one net: fills that graze each other, rings that touch in
+  // a point. No factory makes them. So the layout as the least tolerance shows it becomes the reference, and the place is
+  // named.
+  diagnostics.warn("overlay.contact_within_net",
+                   strict.failure->text() + "; until then the layout is taken as it is after snapping", strict.failure->spot());
+  const Census reference = std::move(*strict.finest);
+  Outcome outcome =
+      attempt_all(tolerance_nm, strict.num_attempts, sheets, reference, options, labels, conductors, diagnostics, progress);
+  if (!outcome.result) throw outcome.failure.value();
+  return std::move(*outcome.result);
 }
 
 }  // namespace pcbmesh::overlay

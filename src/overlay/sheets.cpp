@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "src/overlay/collapse.hpp"
 #include "src/overlay/noding.hpp"
 
 namespace pcbmesh::overlay {
@@ -184,21 +185,58 @@ SheetCensus make_sheet(const model::Model& model, const std::vector<std::vector<
   for (std::int32_t& state : faces.state) state = membership.of(state);
   made.num_specks = drop_specks(graph, faces, labels, &diagnostics, model);
   made.census = take_census(graph, faces, labels, conductors);
-  std::vector<std::uint8_t> fixed(graph.points.size(), 0);
+  std::vector<std::uint8_t> marks(graph.points.size(), 0);
   std::size_t kept = 0;
   for (std::size_t e = 0; e < graph.edges.size(); ++e) {
     Edge edge = graph.edges[e];
     edge.label = labels.subtract(faces.state[ix(faces.left[e])], faces.state[ix(faces.right[e])]);
     if (edge.label == 0) continue;
     if (membership.differ_in_frame(windings[ix(faces.left[e])], windings[ix(faces.right[e])]))
-      fixed[ix(edge.u)] = fixed[ix(edge.v)] = 1;
+      marks[ix(edge.u)] = marks[ix(edge.v)] = fixed_point;
     graph.edges[kept++] = edge;
   }
   graph.edges.resize(kept);
-  compact(graph, labels, &fixed);
+  compact(graph, labels, &marks);
   made.sheet.outlines = std::move(graph);
-  made.sheet.fixed = std::move(fixed);
+  made.sheet.marks = std::move(marks);
   return made;
+}
+
+/// Finds where outlines that sheets have in common begin and end: points of two sheets with different neighbours.
+void mark_run_ends(std::vector<Sheet>& sheets) {
+  struct Star {
+    Point at, low, high;  ///< point and its two neighbours; both are the point itself if it has not two edges
+    std::int32_t sheet, vertex;
+  };
+  std::vector<Star> stars;
+  for (std::size_t s = 0; s < sheets.size(); ++s) {
+    const EdgeGraph& graph = sheets[s].outlines;
+    const std::size_t first = stars.size();
+    std::vector<std::uint8_t> degree(graph.points.size(), 0);
+    for (std::size_t v = 0; v < graph.points.size(); ++v)
+      stars.push_back(
+          {graph.points[v], graph.points[v], graph.points[v], static_cast<std::int32_t>(s), static_cast<std::int32_t>(v)});
+    const auto join = [&](std::int32_t v, Point other) {
+      Star& star = stars[first + ix(v)];
+      if (degree[ix(v)] < 3) ++degree[ix(v)];
+      if (degree[ix(v)] == 1) star.low = other;
+      if (degree[ix(v)] == 2) star.high = std::max(star.low, other), star.low = std::min(star.low, other);
+      if (degree[ix(v)] == 3) star.low = star.high = star.at;
+    };
+    for (const Edge& e : graph.edges) join(e.u, graph.points[ix(e.v)]), join(e.v, graph.points[ix(e.u)]);
+  }
+  std::sort(stars.begin(), stars.end(),
+            [](const Star& a, const Star& b) { return a.at != b.at ? a.at < b.at : a.sheet < b.sheet; });
+  for (std::size_t i = 0; i < stars.size();) {
+    std::size_t j = i;
+    bool differ = false;
+    for (; j < stars.size() && stars[j].at == stars[i].at; ++j)
+      differ = differ || stars[j].low != stars[i].low || stars[j].high != stars[i].high;
+    for (; i < j; ++i) {
+      std::uint8_t& mark = sheets[ix(stars[i].sheet)].marks[ix(stars[i].vertex)];
+      if (differ && mark == free_point) mark = run_end;
+    }
+  }
 }
 
 /// Whether some conductors of different sheets share a slab: only then does connectivity need all sheets at once.
@@ -206,6 +244,7 @@ bool sheets_meet(const std::vector<Sheet>& sheets, const Conductors& conductors)
   for (std::size_t i = 0; i < sheets.size(); ++i) {
     for (std::size_t j = i + 1; j < sheets.size(); ++j) {
       const auto conducts = [&](std::int32_t body) { return conductors.conducts(body); };
+      if (sheets[i].outlines.edges.empty() || sheets[j].outlines.edges.empty()) continue;
       if (std::ranges::any_of(sheets[i].bodies, conducts) && std::ranges::any_of(sheets[j].bodies, conducts) &&
           conductors.share_slab(sheets[i].bodies.front(), sheets[j].bodies.front()))
         return true;
@@ -252,6 +291,7 @@ Sheets make_sheets(const model::Model& model, LabelPool& labels, const Conductor
     made.num_specks += sheet.num_specks;
     made.sheets.push_back(std::move(sheet.sheet));
   }
+  mark_run_ends(made.sheets);
   if (sheets_meet(made.sheets, conductors)) {
     progress.at("connections", 0);
     std::vector<const EdgeGraph*> graphs;

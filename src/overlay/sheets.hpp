@@ -15,7 +15,8 @@ namespace pcbmesh::overlay {
 struct Sheet {
   std::vector<std::int32_t> bodies;  ///< ascending
   EdgeGraph outlines;                ///< labels: {body, +-1}
-  std::vector<std::uint8_t> fixed;   ///< per point: on the outline of the domain, or of the board for other bodies
+  std::vector<std::uint8_t>
+      marks;  ///< per point, see collapse.hpp; fixed on the outline of the domain, or of the board for other bodies
 };
 
 struct Sheets {

@@ -107,7 +107,7 @@ def check_msh(mesh, tags):
         elements = numpy.sort(numpy.asarray(gmsh.model.mesh.getElementsByType(kind)[1]).reshape(-1, corners), axis=1)
         expect(len(numpy.unique(elements, axis=0)) == len(elements), f"{mesh.name}: elements of type {kind} twice")
     for dimension in (0, 1):
-        expect(not gmsh.model.mesh.getElements(dimension)[0], f"{mesh.name}: elements of dimension {dimension}")
+        expect(len(gmsh.model.mesh.getElements(dimension)[0]) == 0, f"{mesh.name}: elements of dimension {dimension}")
     total = sum(v["volume_m3"] for v in tags["volumes"])
     expect(close(outward_flux(index, points) * unit**3, total, 1e-7), f"{mesh.name}: faces don't enclose the volume")
     print(f"{mesh.name}: {len(points)} nodes, {sum(v['num_cells'] for v in tags['volumes'])} prisms, "
@@ -139,9 +139,15 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         for mesh, options in (("b41.msh", []), ("a41.msh", ["--ascii"]), ("b22.msh", ["--msh-version", "2.2"]),
-                              ("a22.msh", ["--msh-version", "2.2", "--ascii"])):
-            check_msh(*make(folder, mesh, *options))
+                              ("a22.msh", ["--msh-version", "2.2", "--ascii"]),
+                              ("hollow41.msh", ["--conductors", "hollow", "--unit", "mm"]),
+                              ("hollow22.msh", ["--conductors", "hollow", "--unit", "um", "--msh-version", "2.2"])):
+            written, tags = make(folder, mesh, *options)
+            check_msh(written, tags)
+            is_hollow = any(face["kind"] == "conductor" for face in tags["faces"])
+            expect(is_hollow == mesh.startswith("hollow"), f"{mesh}: conductor faces where none belong, or none where some do")
         check_vtu(*make(folder, "a.vtu"))
+        check_vtu(*make(folder, "hollow.vtu", "--conductors", "hollow", "--unit", "mm"))
     gmsh.finalize()
     for fault in faults:
         print("FAULT:", fault)
