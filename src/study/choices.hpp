@@ -38,6 +38,8 @@ inline constexpr std::array<Choice<SublayerRule>, 5> sublayer_names{{{SublayerRu
                                                                      {SublayerRule::ceil, "ceil"},
                                                                      {SublayerRule::none, "none"},
                                                                      {SublayerRule::optimal, "optimal"}}};
+inline constexpr std::array<Choice<TriangleSeed>, 2> seed_names{
+    {{TriangleSeed::delaunay, "delaunay"}, {TriangleSeed::hex, "hex"}}};
 inline constexpr std::array<Choice<geometry::ArcMode>, 4> arc_names{{{geometry::ArcMode::inscribed, "inscribed"},
                                                                      {geometry::ArcMode::circumscribed, "circumscribed"},
                                                                      {geometry::ArcMode::equal_area, "equal_area"},
