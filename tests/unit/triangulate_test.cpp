@@ -172,7 +172,7 @@ Drawing board_with_pads() {
   return drawing;
 }
 
-TEST(Triangulate, T1_EveryGraphEdgeIsAUnionOfMeshEdges) {
+TEST(Triangulate, P1_T1_EveryGraphEdgeIsAUnionOfMeshEdges) {
   const Drawing drawing = board_with_pads();
   const mesh::PlanarGraph graph = drawing.graph();
   const auto result = run(drawing, {.longest_edge_nm = 3e5});
@@ -221,7 +221,7 @@ TEST(Triangulate, T2_EachTriangleLiesInOneFaceOfTheGraph) {
   }
 }
 
-TEST(Triangulate, RegionsEndAtConstrainedEdgesOnly) {
+TEST(Triangulate, P3_RegionsEndAtConstrainedEdgesOnly) {
   const auto result = run(board_with_pads(), {.longest_edge_nm = 3e5});
   const PlanarMesh& mesh = result.mesh;
   const std::set<std::array<std::int32_t, 2>> constrained(mesh.constrained().begin(), mesh.constrained().end());
@@ -392,7 +392,7 @@ TEST(Triangulate, GradingIsFineAtCopperAndCoarseAway) {
   EXPECT_LT(num_in_hole, 20);
 }
 
-TEST(Triangulate, CrossingEdgesAreRefusedWithThePlace) {
+TEST(Triangulate, G2_CrossingEdgesAreRefusedWithThePlace) {
   mesh::PlanarGraphParts parts;  // two rings that cross at (2, 1) and (1, 2) mm without a vertex there
   Drawing drawing;
   drawing.ring(domain, rectangle(0, 0, 2'000'000, 2'000'000))

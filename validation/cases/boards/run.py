@@ -63,13 +63,13 @@ def line(row):
             + ("passed |" if row["errors"] == 0 else f"{row['errors']} errors: {', '.join(row['findings'])} |"))
 
 
-def main():
+def main(arguments=None):
     parser = argparse.ArgumentParser()
     parser.add_argument("--write", action="store_true", help="write docs/evidence/boards.md")
     parser.add_argument("--only", default="", help="boards whose name contains this")
     parser.add_argument("--keep", type=pathlib.Path, help="keep the meshes in this folder")
     parser.add_argument("--most", type=int, default=20, help="boards above this number are left out")
-    options = parser.parse_args()
+    options = parser.parse_args(arguments)
     require_data()
     rows = []
     print(HEAD, flush=True)
