@@ -41,6 +41,29 @@ study::Study study_of_paper() {
   return study;
 }
 
+/// The paper projects the outline of every feature, those inside other copper too; the product unites the copper of a net
+/// first. So here every shape becomes a body of its own.
+model::Model with_every_outline(const model::Model& model) {
+  model::ModelParts parts;
+  parts.source = model.source();
+  parts.materials.assign(model.materials().begin(), model.materials().end());
+  parts.nets.assign(model.nets().begin(), model.nets().end());
+  parts.slabs.assign(model.slabs().begin(), model.slabs().end());
+  parts.bodies.assign(model.bodies().begin(), model.bodies().end());
+  std::vector<bool> is_taken(parts.bodies.size(), false);
+  for (model::BodyShape shape : model.shapes()) {
+    const auto body = static_cast<std::size_t>(shape.body);
+    if (is_taken[body]) {
+      shape.body = static_cast<std::int32_t>(parts.bodies.size());
+      parts.bodies.push_back(model.bodies()[body]);
+    } else {
+      is_taken[body] = true;
+    }
+    parts.shapes.push_back(std::move(shape));
+  }
+  return model::Model::from_parts(std::move(parts));
+}
+
 /// Sums over prisms of equal base: one per triangle and sub-layer height.
 struct PrismMean {
   RunningSum quality, weighted, volume;
@@ -126,7 +149,7 @@ Json planar_json(const mesh::PlanarMesh& planar, const triangulate::TriangulateS
 Json measure_cases(const std::filesystem::path& board_file, const CompatLayers& compat) {
   Diagnostics diagnostics;
   const study::Study study = study_of_paper();
-  const model::Model model = compose::compose(formats::read_board(board_file).board, study, diagnostics);
+  const model::Model model = with_every_outline(compose::compose(formats::read_board(board_file).board, study, diagnostics));
   overlay::OverlayOptions overlay_options;
   overlay_options.tolerance_nm = study.tolerance;
   const overlay::OverlayResult graph = overlay::overlay(model, overlay_options, diagnostics);
