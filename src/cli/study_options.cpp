@@ -80,7 +80,8 @@ std::shared_ptr<StudyOptions> add_study_options(CLI::App& command) {
       .add_option("--policy", o->policy,
                   "Common prism height: none, basic, average, maximum, minimum, thinnest_layer, or the paper's case 1 to 5")
       ->group(sizes);
-  command.add_option("--sublayers", o->sublayers, "Cutting of layers: floor, round, ceil, none, optimal")->group(sizes);
+  command.add_option("--sublayers", o->sublayers, "Cutting of layers: floor, round, ceil, none, optimal, best_mean")
+      ->group(sizes);
   command.add_option("--tolerance", o->tolerance, "Snapping tolerance: auto or a length (default auto)")->group(sizes);
   command.add_option("--arc-sagitta", o->arc_sagitta, "Largest distance of chord and arc (default 5um)")->group(sizes);
   command.add_option("--unit", o->unit, "Unit written to the mesh: m (default), mm, um")->group(sizes);

@@ -169,7 +169,7 @@ TEST(Study, RoundTripIsExactForRandomStudies) {
     if (!s.edge_at_copper) s.seed = static_cast<TriangleSeed>(upto(1));
     s.smooth = upto(1) == 1;
     s.policy = static_cast<HeightPolicy>(upto(5));
-    s.sublayers = static_cast<SublayerRule>(upto(4));
+    s.sublayers = static_cast<SublayerRule>(upto(5));
     s.arcs = {1 + upto(999'999), static_cast<geometry::ArcMode>(upto(3))};
     s.unit = static_cast<LengthUnit>(upto(2));
     s.max_prisms = 1 + upto(std::int64_t{1} << 61);

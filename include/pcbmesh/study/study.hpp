@@ -57,7 +57,8 @@ enum class SublayerRule {
   round,   ///< max(1, round(H/h))
   ceil,    ///< ceil(H/h)
   none,    ///< one sub-layer per layer
-  optimal  ///< exact thresholds F10 on the final mesh's mean optimal height
+  optimal,   ///< exact thresholds F10 on the final mesh's mean optimal height
+  best_mean  ///< the counts of greatest plain mean quality on the final mesh (Dinkelbach); the plain mean can be gamed
 };
 
 /// What the engineer wants to know about a board: everything that steers the mesh. Plain values; parse and

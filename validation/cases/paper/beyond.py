@@ -11,7 +11,7 @@ HEX = ("--seed", "hex", "--smooth", "--policy", "none")
 # (example, layers, target q_p, most prisms, the product's own flags)
 TARGETS = (
     ("serpentine", 4, 0.6995, 5_000, ("--longest-edge", "0.5mm", "--sublayers", "none")),
-    ("serpentine", 4, 0.78, 13_400, ("--longest-edge", "0.37mm", "--sublayers", "optimal")),
+    ("serpentine", 4, 0.78, 13_400, ("--longest-edge", "0.375mm", "--sublayers", "best_mean")),
     ("via", 11, 0.7614, 90_000, ("--longest-edge", "72um", "--sublayers", "none")),
     ("via", 11, 0.97, 300_000, ("--longest-edge", "39um", "--sublayers", "none")),
 )
