@@ -203,6 +203,19 @@ OverlayResult finished(const model::Model& model, const Sheets& sheets, const Ce
   return result;
 }
 
+/// Nets that meet in the layout itself (net ties, drawing errors) are meshed as drawn, and named.
+void warn_of_contacts(const Census& reference, const Sheets& sheets, const Cleaned& cleaned, LabelPool& labels,
+                      const Conductors& conductors, Diagnostics& diagnostics, const Progress& progress) {
+  for (const NetPair& pair : reference.touching) {
+    if (pair[0] < 0) continue;  // copper without a net is nobody's short
+    const Mismatch contact{{}, -1, pair};
+    diagnostics.warn("overlay.touching_nets",
+                     fmt::format("nets {} and {} touch or overlap in the layout itself; they are meshed as drawn",
+                                 conductors.model().net_name(pair[0]), conductors.model().net_name(pair[1])),
+                     locate(contact, sheets, cleaned, labels, conductors, progress));
+  }
+}
+
 /// What a series of attempts came to.
 struct Outcome {
   std::optional<OverlayResult> result;  ///< agrees with the reference; empty if no attempt did
@@ -224,6 +237,7 @@ Outcome attempt_all(Nm tolerance_nm, int num_before, const Sheets& sheets, const
       progress.at("verification", 0);
       mismatch = compare(reference, cleaned.census, conductors.model());
       if (!mismatch) {
+        warn_of_contacts(reference, sheets, cleaned, labels, conductors, diagnostics, progress);
         outcome.result =
             finished(conductors.model(), sheets, reference, cleaned, *attempt, outcome.num_attempts, labels, progress);
         return outcome;

@@ -129,6 +129,11 @@ MeshBoardResult mesh_board(const board::Board& board, const study::Study& study,
   require_budget(static_cast<double>(num_prisms(planar.mesh, plan)), study,
                  fmt::format("{} triangles in {} sub-layers", planar.mesh.num_triangles(), plan.num_sublayers()));
 
+  // Where nets overlap in the layout itself, one of them owns the common copper and the other may be cut by it: how many pieces
+  // it has is then no measure of the mesh.
+  for (const auto& pair : graph.touching_nets)
+    for (const std::int32_t net : pair) graph.net_pieces[static_cast<std::size_t>(net)] = -1;
+
   progress.at("extrude", 0);
   mesh::PrismMesh prisms =
       timed("extrude", [&] { return extrude::extrude(planar.mesh, plan, model, graph.net_pieces, graph.touching_nets); });
