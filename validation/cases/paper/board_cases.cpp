@@ -15,6 +15,7 @@
 #include "pcbmesh/formats/registry.hpp"
 #include "pcbmesh/layering/choose_layers.hpp"
 #include "pcbmesh/layering/prism_quality.hpp"
+#include "pcbmesh/layering/quality_report.hpp"
 #include "pcbmesh/overlay/overlay.hpp"
 #include "pcbmesh/triangulate/triangulate.hpp"
 #include "validation/cases/paper/measure.hpp"
@@ -94,10 +95,24 @@ Json compat_json(const mesh::PlanarMesh& planar, const CompatLayers& compat, boo
           {"volume_weighted_prism", mean.weighted.total() / mean.volume.total()}};
 }
 
-/// The product's own way: layers cut, extruded, measured.
-Json clean_json(const mesh::PlanarMesh& planar, const model::Model& model, const overlay::OverlayResult& graph,
-                SublayerRule rule, double common_height, const layering::HeightStatistics& heights) {
-  const mesh::LayerPlan plan = layering::choose_layers(model.slabs(), rule, common_height, heights);
+/// The paper's meshes have no regions to extrude, so their prisms are summed one by one.
+Json summed_json(const mesh::PlanarMesh& planar, const mesh::LayerPlan& plan) {
+  PrismMean mean;
+  for (std::int32_t t = 0; t < planar.num_triangles(); ++t) {
+    const auto squared = planar.squared_edges_m2(t);
+    for (std::int32_t k = 0; k < plan.num_sublayers(); ++k)
+      mean.add(planar.area_m2(t), squared[0] + squared[1] + squared[2], plan.height_m(k));
+  }
+  return {{"sublayers", plan.num_sublayers()},
+          {"prisms", mean.num_prisms},
+          {"mean_prism", mean.quality.total() / static_cast<double>(mean.num_prisms)},
+          {"volume_weighted_prism", mean.weighted.total() / mean.volume.total()},
+          {"volume_m3", mean.volume.total()}};
+}
+
+/// The product's own way: extruded, tagged, measured.
+Json extruded_json(const mesh::PlanarMesh& planar, const mesh::LayerPlan& plan, const model::Model& model,
+                   const overlay::OverlayResult& graph) {
   const mesh::PrismMesh prisms = extrude::extrude(planar, plan, model, graph.net_pieces, graph.touching_nets);
   const layering::QualityStatistics quality = layering::quality_statistics(prisms);
   double volume = 0;
@@ -106,8 +121,6 @@ Json clean_json(const mesh::PlanarMesh& planar, const model::Model& model, const
           {"prisms", prisms.num_prisms()},
           {"mean_prism", quality.mean_prism},
           {"volume_weighted_prism", quality.volume_weighted_prism},
-          {"min_prism", quality.min_prism},
-          {"quantile1_prism", quality.quantile1_prism},
           {"volume_m3", volume}};
 }
 
@@ -128,65 +141,87 @@ Json all_heights_json(const mesh::PlanarMesh& planar) {
 }
 
 /// Everything about the planar mesh of one case that the paper prints, and the smallest angle.
-Json planar_json(const mesh::PlanarMesh& planar, const triangulate::TriangulateStatistics& statistics) {
+Json planar_json(const mesh::PlanarMesh& planar) {
   const layering::HeightStatistics heights = layering::height_statistics(planar);
-  double longest2 = 0, area = 0;
+  double longest2 = 0, area = 0, min_angle_deg = 60;
   for (std::int32_t t = 0; t < planar.num_triangles(); ++t) {
     const auto squared = planar.squared_edges_m2(t);
     longest2 = std::max({longest2, squared[0], squared[1], squared[2]});
     area += planar.area_m2(t);
+    min_angle_deg = std::min(min_angle_deg, layering::prism_measures(planar.area_m2(t), squared, 1).min_dihedral_deg);
   }
   return {{"triangles", planar.num_triangles()},
           {"mean_triangle", heights.mean_triangle_quality},
           {"heights", heights_json(heights, planar.num_triangles())},
           {"longest_edge_m", std::sqrt(longest2)},
           {"area_m2", area},
-          {"min_angle_deg", statistics.min_angle_deg}};
+          {"min_angle_deg", min_angle_deg}};
+}
+
+struct Example {
+  model::Model model;
+  overlay::OverlayResult graph;
+};
+
+/// The five cases with one mesher. @param mesh_at  planar mesh for a longest edge in metres
+/// @param measure  figures of the prisms of a plan over a planar mesh
+template <class MeshAt, class Measure>
+Json case_rows(const Example& example, const CompatLayers& compat, MeshAt mesh_at, Measure measure) {
+  const mesh::PlanarMesh first = mesh_at(longest_edge_m);
+  const layering::HeightStatistics first_heights = layering::height_statistics(first);
+  Json rows = Json::array();
+  for (std::size_t i = 0; i < policies.size(); ++i) {
+    const double height = *layering::common_height_m(policies[i], first_heights, example.model.slabs());
+    const std::optional<double> feedback = layering::feedback_edge_m(policies[i], height, longest_edge_m);
+    const mesh::PlanarMesh planar = feedback ? mesh_at(*feedback) : first;
+    const layering::HeightStatistics heights = layering::height_statistics(planar);
+    Json row = planar_json(planar);
+    row["case"] = i + 1;
+    row["common_height_m"] = height;
+    row["longest_edge_bound_m"] = feedback.value_or(longest_edge_m);
+    row["compat"] = compat_json(planar, compat, policies[i] == HeightPolicy::basic);
+    for (const SublayerRule rule : rules) {
+      const mesh::LayerPlan plan = layering::choose_layers(example.model.slabs(), rule, height, heights);
+      row["clean"][std::string(study::name_of(rule))] = measure(planar, plan);
+    }
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+Example read_example(const std::filesystem::path& board_file) {
+  Diagnostics diagnostics;
+  const study::Study study = study_of_paper();
+  const board::Board board = formats::read_board(board_file).board;
+  overlay::OverlayOptions options;
+  options.tolerance_nm = study.tolerance;
+  model::Model model = with_every_outline(compose::compose(board, study, diagnostics));
+  overlay::OverlayResult graph = overlay::overlay(model, options, diagnostics);
+  return {std::move(model), std::move(graph)};
 }
 
 }  // namespace
 
 Json measure_cases(const std::filesystem::path& board_file, const CompatLayers& compat) {
-  Diagnostics diagnostics;
-  const study::Study study = study_of_paper();
-  const model::Model model = with_every_outline(compose::compose(formats::read_board(board_file).board, study, diagnostics));
-  overlay::OverlayOptions overlay_options;
-  overlay_options.tolerance_nm = study.tolerance;
-  const overlay::OverlayResult graph = overlay::overlay(model, overlay_options, diagnostics);
-  triangulate::TriangulateOptions options;
-  options.as_in_paper = true;
-  options.longest_edge_nm = longest_edge_m / metres_per_nm;
-  const auto triangulated = [&] { return triangulate::triangulate(graph.graph, model, options, diagnostics); };
-  const triangulate::TriangulateResult first = triangulated();
-  const layering::HeightStatistics first_heights = layering::height_statistics(first.mesh);
-
-  Json cases = Json::array();
-  for (std::size_t i = 0; i < policies.size(); ++i) {
-    const double height = *layering::common_height_m(policies[i], first_heights, model.slabs());
-    const std::optional<double> feedback = layering::feedback_edge_m(policies[i], height, longest_edge_m);
-    std::optional<triangulate::TriangulateResult> second;
-    if (feedback) {
-      options.longest_edge_nm = *feedback / metres_per_nm;
-      second = triangulated();
-    }
-    const triangulate::TriangulateResult& final_result = second ? *second : first;
-    const layering::HeightStatistics heights = layering::height_statistics(final_result.mesh);
-    Json row = planar_json(final_result.mesh, final_result.statistics);
-    row["case"] = i + 1;
-    row["common_height_m"] = height;
-    row["longest_edge_bound_m"] = feedback.value_or(longest_edge_m);
-    row["compat"] = compat_json(final_result.mesh, compat, policies[i] == HeightPolicy::basic);
-    for (const SublayerRule rule : rules)
-      row["clean"][std::string(study::name_of(rule))] = clean_json(final_result.mesh, model, graph, rule, height, heights);
-    cases.push_back(std::move(row));
-  }
+  const Example example = read_example(board_file);
+  const auto mesh_at = [&](double edge_m) { return mesh_with_cgal(example.graph.graph, edge_m * 1e3); };
+  const auto our_mesh_at = [&](double edge_m) {
+    Diagnostics diagnostics;
+    triangulate::TriangulateOptions options;
+    options.longest_edge_nm = edge_m / metres_per_nm;
+    return triangulate::triangulate(example.graph.graph, example.model, options, diagnostics).mesh;
+  };
   double stack_m = 0;
-  for (const model::Slab& slab : model.slabs())
+  for (const model::Slab& slab : example.model.slabs())
     stack_m += static_cast<double>(slab.z_top_nm - slab.z_bottom_nm) * metres_per_nm;
   return {{"board", board_file.filename().string()},
           {"stack_m", stack_m},
-          {"initial_heights_m", all_heights_json(first.mesh)},
-          {"cases", cases}};
+          {"initial_heights_m", all_heights_json(mesh_at(longest_edge_m))},
+          {"cases", case_rows(example, compat, mesh_at, summed_json)},
+          {"product_cases",
+           case_rows(example, compat, our_mesh_at, [&](const mesh::PlanarMesh& planar, const mesh::LayerPlan& plan) {
+             return extruded_json(planar, plan, example.model, example.graph);
+           })}};
 }
 
 }  // namespace pcbmesh::validation::paper

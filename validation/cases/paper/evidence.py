@@ -52,9 +52,9 @@ def compat(example, measured):
     return table(("case", "longest edge, mm", "triangles", "q_t", "prisms", "q_p", "our q_p by volume"), rows) + "\nEach cell: paper / ours (difference).\n"
 
 
-def clean(measured):
+def clean(measured, key="cases"):
     rows = []
-    for row in measured["cases"]:
+    for row in measured[key]:
         cells = [f"{c['prisms']:,}: {c['mean_prism']:.4f} ({c['volume_weighted_prism']:.4f})" for c in (row["clean"][rule] for rule in ("floor", "round", "ceil", "optimal"))]
         rows.append((CASE_NAMES[row["case"]], f"{row['triangles']:,}", *cells))
     return table(("case", "triangles", "floor", "round", "ceil", "optimal (F10)"), rows) + "\nEach cell: prisms: q_p (q_p by volume).\n"
