@@ -33,6 +33,7 @@ double length(const Vector& a) {
 /// The measures by their general definitions on six corners, with nothing taken from the prism being right.
 PrismMeasures measures_of_wedge(const std::array<Vector, 6>& p) {
   PrismMeasures out;
+  double shortest = 1e30, longest = 0;
   for (const auto& [a, b] :
        std::array<std::pair<int, int>, 9>{{{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}}}) {
     const double edge = length(minus(p[static_cast<std::size_t>(b)], p[static_cast<std::size_t>(a)]));
