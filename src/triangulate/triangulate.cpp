@@ -50,6 +50,8 @@ void check(const TriangulateOptions& options) {
   if (options.grading && !(is_positive(options.grading->edge_at_copper_nm) && is_positive(options.grading->growth))) {
     throw Error(ErrorCode::usage, "grading needs an edge length at copper and a growth above 0");
   }
+  if (options.grading && options.as_in_paper)
+    throw Error(ErrorCode::usage, "the paper's meshes are not graded: drop one of the two");
 }
 
 std::vector<SegmentDistance::Segment> copper_segments(const mesh::PlanarGraph& graph, const model::Model& model,

@@ -24,7 +24,7 @@ struct TriangulateOptions {
   double min_angle_deg = 20.7;   ///< in (0, 28.6]
   std::optional<Grading> grading{};
   std::int64_t max_vertices = 50'000'000;
-  /// Millimetre doubles and the worst triangle first, as the paper's program had them: reproduces its triangle counts, which
+  /// CGAL's stock mesher on millimetre doubles, as the paper's program had it: reproduces its triangle counts, which
   /// hang on rounding (a right angle is not quite right in binary millimetres). Slower, and unsafe for near-coincident edges.
   bool as_in_paper = false;
 };
