@@ -9,8 +9,8 @@
 namespace pcbmesh::overlay {
 namespace {
 
-/// Cosine of 15 degrees.
-constexpr double needle_cosine = 0.96593;
+/// Cosines of 15 and 6 degrees.
+constexpr double needle_cosine = 0.96593, hair_cosine = 0.99452;
 
 struct Wedge {
   double cosine;                       ///< of the angle; larger is sharper
@@ -110,7 +110,7 @@ class Blunter {
                  second_length = distance(at, noder_.points()[ix(second_end)]);
     const double half_sine = std::sqrt(std::max(0.0, (1 - wedge.cosine) / 2));
     // A needle is worth going nearer to a neck, but never within the tolerance of closing it.
-    guard_ = wedge.cosine > needle_cosine ? 1.0 : 2.0;
+    guard_ = wedge.cosine > hair_cosine ? 0.5 : wedge.cosine > needle_cosine ? 1.0 : 2.0;
     const double run = limits_.width_nm / (2 * half_sine);
     const double least = run + static_cast<double>(noder_.tolerance());
     if (std::min(first_length, second_length) >= least) {
@@ -121,7 +121,9 @@ class Blunter {
       if (run_together(wedge, keep_first, run)) return true;
       return (keep_first ? first_stiff : second_stiff) == 0 && run_together(wedge, !keep_first, run);
     }
-    return route_by_end(wedge, first_length > second_length);
+    const bool move_first = first_length > second_length;
+    if (route_by_end(wedge, move_first)) return true;
+    return std::abs(first_length - second_length) < static_cast<double>(noder_.tolerance()) && route_by_end(wedge, !move_first);
   }
 
   /// Both edges share v -> m2, the one that gives way then steps across to m1.
@@ -148,7 +150,7 @@ class Blunter {
     return true;
   }
 
-  /// The longer edge goes by the end of the shorter.
+  /// The edge that gives way, the longer or one hardly shorter, goes by the end of the other.
   bool route_by_end(const Wedge& wedge, bool move_first) {
     const std::int32_t v = wedge.vertex;
     const std::int32_t keep_id = move_first ? wedge.second : wedge.first, move_id = move_first ? wedge.first : wedge.second;
@@ -158,7 +160,8 @@ class Blunter {
     const Point at = noder_.points()[ix(v)], by = noder_.points()[ix(keep_end)], to = noder_.points()[ix(move_end)];
     const double detour = 1.6 * limits_.width_nm;
     const Foot foot = foot_of(by, at, to);
-    if (foot.line_distance2 > detour * detour || foot.share >= 1) return false;
+    const double beyond = (foot.share - 1) * distance(at, to);
+    if (foot.line_distance2 > detour * detour || beyond >= static_cast<double>(noder_.tolerance())) return false;
     const std::int32_t keep_label = label_from(keep, v), move_label = label_from(move, v);
     if (!is_safe(v, keep_label, move_label, move_id, by, to)) return false;
     removed_[ix(move_id)] = removed_[ix(keep_id)] = 1;

@@ -227,7 +227,8 @@ bool Collapser::place_corner(Point a, Point b, Point c, Point d, Plan& plan) con
   const double height = -twice_area;
   const bool same_side = (height_b >= 0) == (height_c >= 0);
   const bool on_ab = same_side ? std::abs(height_b) > std::abs(height_c) : (height_b >= 0) == (height >= 0);
-  if (std::abs(height) <= 0.5 * std::sqrt(length2)) {
+  // Nanometre jitter: a corner that flat would land anywhere.
+  if (std::abs(height) <= 2 * std::sqrt(length2)) {
     plan.straight = true;
     return true;
   }

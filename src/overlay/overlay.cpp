@@ -38,6 +38,7 @@ Nm first_tolerance(const model::Model& model, const OverlayOptions& options) {
 struct Attempt {
   Nm tolerance_nm = 0;
   std::vector<std::int32_t> spared;
+  bool blunts = true;
 };
 
 struct Cleaned {
@@ -61,7 +62,8 @@ Cleaned clean(const Sheets& sheets, const OverlayOptions& options, const Attempt
   progress.at("snapping", 0);
   Noder noder(overlaid(graphs, labels), labels, attempt.tolerance_nm, progress);
   noder.settle();
-  const BluntLimits tips{options.blunt_angle_deg, options.blunt_width_over_tolerance * tol, attempt.spared};
+  const BluntLimits tips{attempt.blunts ? options.blunt_angle_deg : 0, options.blunt_width_over_tolerance * tol,
+                         attempt.spared};
   for (int round = 0; round < most_blunt_rounds; ++round) {
     progress.at("snapping", 0.4 + 0.1 * round);
     if (blunt(noder, tips, conductors) == 0) break;
@@ -149,119 +151,156 @@ void measure_areas(const model::Model& model, const Sheets& sheets, const std::v
   statistics.total_area_error = total_before > 0 ? (total_after - total_before) / total_before : 0;
 }
 
-/// Bodies a mismatch is about.
-std::vector<std::int32_t> bodies_of(const Mismatch& mismatch, const model::Model& model) {
+/// Bodies that mismatches are about, ascending.
+std::vector<std::int32_t> bodies_of(const std::vector<Mismatch>& mismatches, const model::Model& model) {
   std::vector<std::int32_t> bodies;
-  for (std::size_t b = 2; b < model.bodies().size(); ++b) {
-    const std::int32_t net = model.bodies()[b].net;
-    const bool named = mismatch.nets && (net == (*mismatch.nets)[0] || net == (*mismatch.nets)[1]);
-    if (named || static_cast<std::int32_t>(b) == mismatch.body) bodies.push_back(static_cast<std::int32_t>(b));
+  for (const Mismatch& mismatch : mismatches) {
+    if (mismatch.body >= 2) bodies.push_back(mismatch.body);
+    for (std::size_t b = 2; b < model.bodies().size(); ++b) {
+      const std::int32_t net = model.bodies()[b].net;
+      const bool named = mismatch.nets && (net == (*mismatch.nets)[0] || net == (*mismatch.nets)[1]);
+      if (named || (net >= 0 && net == mismatch.net)) bodies.push_back(static_cast<std::int32_t>(b));
+    }
   }
+  std::ranges::sort(bodies);
+  bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
   return bodies;
 }
 
-/// The next try after a failed one; nullopt when none is left. Blunting is given up for the bodies concerned first, since
-/// that costs the rest of the board nothing.
-std::optional<Attempt> next_attempt(const Attempt& last, Nm first_tolerance_nm, const std::optional<Mismatch>& mismatch,
-                                    const model::Model& model) {
-  if (mismatch && last.spared.size() < 64) {
-    Attempt again = last;
-    for (const std::int32_t body : bodies_of(*mismatch, model)) {
-      if (!std::ranges::binary_search(last.spared, body)) again.spared.push_back(body);
-    }
-    std::ranges::sort(again.spared);
-    if (again.spared.size() > last.spared.size()) return again;
-  }
+/// 3/4, 1/2, 1/4 ... of the first tolerance, at last a micrometre without blunting; nullopt when none is left.
+std::optional<Attempt> smaller_attempt(const Attempt& last, Nm first_tolerance_nm) {
   const Nm three_quarters = first_tolerance_nm * 3 / 4;
   const Nm smaller = last.tolerance_nm == first_tolerance_nm ? three_quarters
                      : last.tolerance_nm == three_quarters   ? first_tolerance_nm / 2
                                                              : last.tolerance_nm / 2;
   if (smaller >= least_tolerance) return Attempt{smaller, {}};
-  // The last resort is the least tolerance itself, unless a smaller one was asked for from the start.
   if (last.tolerance_nm > least_tolerance) return Attempt{least_tolerance, {}};
+  // What the probe of accept_what_no_tolerance_keeps() does, so this holds where anything does.
+  if (last.blunts) return Attempt{last.tolerance_nm, {}, false};
   return std::nullopt;
 }
 
-OverlayResult finished(const model::Model& model, const Sheets& sheets, const Census& reference, const Cleaned& cleaned,
-                       const Attempt& attempt, int num_attempts, const LabelPool& labels, const Progress& progress) {
-  const std::vector<double> area_mm2 = areas_mm2(cleaned.graph, labels, model.bodies().size());
-  OverlayResult result{to_planar_graph(cleaned.graph, labels),
-                       make_ledger(model, sheets, cleaned.graph, area_mm2, labels, attempt.tolerance_nm, progress),
-                       {},
-                       reference.pieces,
-                       {}};
-  for (const NetPair& pair : reference.touching) {
-    if (pair[0] >= 0) result.touching_nets.push_back(pair);
-  }
-  result.statistics.tolerance_nm = attempt.tolerance_nm;
-  result.statistics.attempts = num_attempts;
-  result.statistics.num_input_vertices = sheets.num_input_vertices;
-  result.statistics.num_snapped = cleaned.counts.num_snapped;
-  result.statistics.num_crossings = cleaned.counts.num_crossings;
-  result.statistics.num_passes = cleaned.counts.num_passes;
-  measure_areas(model, sheets, area_mm2, result.statistics);
-  return result;
-}
+/// The attempts, and what they are measured by.
+class Attempts {
+ public:
+  Attempts(const model::Model& model, const OverlayOptions& options, const Sheets& sheets, LabelPool& labels,
+           const Conductors& conductors, Diagnostics& diagnostics, const Progress& progress)
+      : model_(model),
+        options_(options),
+        sheets_(sheets),
+        labels_(labels),
+        conductors_(conductors),
+        diagnostics_(diagnostics),
+        progress_(progress),
+        expected_(sheets.exact) {}
 
-/// Nets that meet in the layout itself (net ties, drawing errors) are meshed as drawn, and named.
-void warn_of_contacts(const Census& reference, const Sheets& sheets, const Cleaned& cleaned, LabelPool& labels,
-                      const Conductors& conductors, Diagnostics& diagnostics, const Progress& progress) {
-  for (const NetPair& pair : reference.touching) {
-    if (pair[0] < 0) continue;  // copper without a net is nobody's short
-    const Mismatch contact{{}, -1, pair};
-    diagnostics.warn("overlay.touching_nets",
-                     fmt::format("nets {} and {} touch or overlap in the layout itself; they are meshed as drawn",
-                                 conductors.model().net_name(pair[0]), conductors.model().net_name(pair[1])),
-                     locate(contact, sheets, cleaned, labels, conductors, progress));
-  }
-}
-
-/// What a series of attempts came to.
-struct Outcome {
-  std::optional<OverlayResult> result;  ///< agrees with the reference; empty if no attempt did
-  std::optional<Error> failure;         ///< of the last attempt that failed
-  std::optional<Census> finest;         ///< of the last attempt: the layout as the least tolerance shows it
-  int num_attempts = 0;
-};
-
-Outcome attempt_all(Nm tolerance_nm, int num_before, const Sheets& sheets, const Census& reference,
-                    const OverlayOptions& options, LabelPool& labels, const Conductors& conductors, Diagnostics& diagnostics,
-                    const Progress& progress) {
-  Outcome outcome;
-  outcome.num_attempts = num_before;
-  for (std::optional<Attempt> attempt = Attempt{tolerance_nm, {}}; attempt;) {
-    ++outcome.num_attempts;
-    std::optional<Mismatch> mismatch;
-    try {
-      Cleaned cleaned = clean(sheets, options, *attempt, labels, conductors, progress);
-      progress.at("verification", 0);
-      mismatch = compare(reference, cleaned.census, conductors.model());
-      if (!mismatch) {
-        warn_of_contacts(reference, sheets, cleaned, labels, conductors, diagnostics, progress);
-        outcome.result =
-            finished(conductors.model(), sheets, reference, cleaned, *attempt, outcome.num_attempts, labels, progress);
-        return outcome;
+  OverlayResult run(Nm first_tolerance_nm) {
+    std::optional<Error> failure;
+    std::optional<Attempt> attempt = Attempt{first_tolerance_nm, {}};
+    for (int num_attempts = 1; attempt; ++num_attempts) {
+      try {
+        const Cleaned cleaned = clean(sheets_, options_, *attempt, labels_, conductors_, progress_);
+        progress_.at("verification", 0);
+        std::vector<Mismatch> mismatches = compare(expected_, cleaned.census, model_);
+        const std::vector<std::int32_t> delicate =
+            options_.blunt_angle_deg > 0 ? bodies_of(mismatches, model_) : std::vector<std::int32_t>{};
+        const bool can_spare = attempt->blunts && attempt->spared.empty() && !delicate.empty();
+        if (!mismatches.empty() && !can_spare && accept_what_no_tolerance_keeps())
+          mismatches = compare(expected_, cleaned.census, model_);
+        if (mismatches.empty()) {
+          warn_of_contacts(cleaned);
+          return finished(cleaned, *attempt, num_attempts);
+        }
+        const Spot spot = locate(mismatches.front(), sheets_, cleaned, labels_, conductors_, progress_);
+        failure = refusal(mismatches.front(), spot);
+        diagnostics_.note("overlay.retry",
+                          fmt::format("tolerance {}: {}", format_length(attempt->tolerance_nm), mismatches.front().text), spot);
+        // Blunting is given up for the bodies concerned first: that costs the rest of the board nothing.
+        if (can_spare) {
+          attempt->spared = delicate;
+          continue;
+        }
+      } catch (const Error& error) {
+        if (error.code() != ErrorCode::overlay_no_fixpoint) throw;
+        diagnostics_.note("overlay.retry", fmt::format("tolerance {}: {}", format_length(attempt->tolerance_nm), error.text()),
+                          error.spot());
+        failure = error;
       }
-      const Spot spot = locate(*mismatch, sheets, cleaned, labels, conductors, progress);
-      outcome.failure.emplace(
-          ErrorCode::overlay_topology,
-          mismatch->text +
-              "; the layout has a gap or a neck there that is too small to be meshed: widen it, or give a smaller tolerance",
-          spot);
-      diagnostics.note("overlay.retry", fmt::format("tolerance {}: {}", format_length(attempt->tolerance_nm), mismatch->text),
-                       spot);
-      outcome.finest = std::move(cleaned.census);
-    } catch (const Error& error) {
-      if (error.code() != ErrorCode::overlay_no_fixpoint) throw;
-      diagnostics.note("overlay.retry", fmt::format("tolerance {}: {}", format_length(attempt->tolerance_nm), error.text()),
-                       error.spot());
-      outcome.failure = error;
-      outcome.finest.reset();
+      attempt = smaller_attempt(*attempt, first_tolerance_nm);
     }
-    attempt = next_attempt(*attempt, tolerance_nm, mismatch, conductors.model());
+    throw failure.value();
   }
-  return outcome;
-}
+
+ private:
+  OverlayResult finished(const Cleaned& cleaned, const Attempt& attempt, int num_attempts) const {
+    const std::vector<double> area_mm2 = areas_mm2(cleaned.graph, labels_, model_.bodies().size());
+    OverlayResult result{to_planar_graph(cleaned.graph, labels_),
+                         make_ledger(model_, sheets_, cleaned.graph, area_mm2, labels_, attempt.tolerance_nm, progress_),
+                         {},
+                         expected_.pieces,
+                         {}};
+    for (const NetPair& pair : sheets_.exact.touching) {
+      if (pair[0] >= 0) result.touching_nets.push_back(pair);
+    }
+    result.statistics.tolerance_nm = attempt.tolerance_nm;
+    result.statistics.attempts = num_attempts;
+    result.statistics.num_input_vertices = sheets_.num_input_vertices;
+    result.statistics.num_snapped = cleaned.counts.num_snapped;
+    result.statistics.num_crossings = cleaned.counts.num_crossings;
+    result.statistics.num_passes = cleaned.counts.num_passes;
+    measure_areas(model_, sheets_, area_mm2, result.statistics);
+    return result;
+  }
+
+  /// Nets that meet in the layout itself (net ties, drawing errors) are meshed as drawn, and named.
+  void warn_of_contacts(const Cleaned& cleaned) {
+    for (const NetPair& pair : sheets_.exact.touching) {
+      if (pair[0] < 0) continue;  // copper without a net is nobody's short
+      Mismatch contact;
+      contact.nets = pair;
+      diagnostics_.warn("overlay.touching_nets",
+                        fmt::format("nets {} and {} touch or overlap in the layout itself; they are meshed as drawn",
+                                    model_.net_name(pair[0]), model_.net_name(pair[1])),
+                        locate(contact, sheets_, cleaned, labels_, conductors_, progress_));
+    }
+  }
+
+  static Error refusal(const Mismatch& mismatch, const Spot& spot) {
+    return {ErrorCode::overlay_topology,
+            mismatch.text +
+                "; the layout has a gap or a neck there that is too small to be meshed: widen it, or give a smaller tolerance",
+            spot};
+  }
+
+  /// Gaps and necks below the least tolerance cannot be kept. Between two nets that is an error, told at once; within one net
+  /// it is worth a warning, and the rest of the board must not pay for it.
+  /// @return true if something else is expected now.
+  bool accept_what_no_tolerance_keeps() {
+    if (probed_) return false;
+    probed_ = true;
+    const Nm least = std::min(least_tolerance, options_.tolerance_nm.value_or(least_tolerance));
+    const Cleaned probe = clean(sheets_, options_, {least, {}, false}, labels_, conductors_, progress_);
+    const std::vector<Mismatch> lost = compare(expected_, probe.census, model_);
+    for (const Mismatch& mismatch : lost) {
+      const Spot spot = locate(mismatch, sheets_, probe, labels_, conductors_, progress_);
+      if (mismatch.nets) throw refusal(mismatch, spot);
+      diagnostics_.warn("overlay.parts_joined", mismatch.text + "; gaps and necks below 1 um within one net are not kept",
+                        spot);
+    }
+    expected_ = probe.census;
+    return !lost.empty();
+  }
+
+  const model::Model& model_;
+  const OverlayOptions& options_;
+  const Sheets& sheets_;
+  LabelPool& labels_;
+  const Conductors& conductors_;
+  Diagnostics& diagnostics_;
+  const Progress& progress_;
+  Census expected_;
+  bool probed_ = false;
+};
 
 }  // namespace
 
@@ -271,20 +310,7 @@ OverlayResult overlay(const model::Model& model, const OverlayOptions& options, 
   LabelPool labels;
   const Conductors conductors(model);
   const Sheets sheets = make_sheets(model, labels, conductors, diagnostics, progress);
-  Outcome strict = attempt_all(tolerance_nm, 0, sheets, sheets.exact, options, labels, conductors, diagnostics, progress);
-  if (strict.result) return std::move(*strict.result);
-  if (!strict.finest || strict.finest->touching != sheets.exact.touching) throw strict.failure.value();
-
-  // Layouts hold necks and gaps of a fraction of a micrometre inside one net: fills that graze each other, rings that touch in
-  // a point. No factory makes them. So the layout as the least tolerance shows it becomes the reference, and the place is
-  // named.
-  diagnostics.warn("overlay.contact_within_net",
-                   strict.failure->text() + "; until then the layout is taken as it is after snapping", strict.failure->spot());
-  const Census reference = std::move(*strict.finest);
-  Outcome outcome =
-      attempt_all(tolerance_nm, strict.num_attempts, sheets, reference, options, labels, conductors, diagnostics, progress);
-  if (!outcome.result) throw outcome.failure.value();
-  return std::move(*outcome.result);
+  return Attempts(model, options, sheets, labels, conductors, diagnostics, progress).run(tolerance_nm);
 }
 
 }  // namespace pcbmesh::overlay

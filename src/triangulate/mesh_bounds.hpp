@@ -29,6 +29,7 @@ class MeshBounds {
   void set_grading(double edge_at_copper, double growth, const SegmentDistance& copper);
 
   [[nodiscard]] double sine2_bound() const { return sine2_bound_; }
+  [[nodiscard]] double longest_edge() const { return longest_; }
   [[nodiscard]] double floor() const { return floor_; }
   [[nodiscard]] double longest2() const { return longest2_; }
 
@@ -59,11 +60,6 @@ class MeshBounds {
     if (copper_ != nullptr && shape.longest2 > at_copper2_ && is_too_long_here(face, shape.longest2)) return Verdict::too_long;
     if (!(shape.sine2 < sine2_bound_) || shape.shortest2 < floor2_) return Verdict::good;
     return is_forced(face, shape.shortest) ? Verdict::good : Verdict::bad_shape;
-  }
-
-  /// For refinement by rank: too long edges come first, the longest before the shorter, then the smallest angles.
-  [[nodiscard]] double urgency(Verdict verdict, const Shape& shape) const {
-    return verdict == Verdict::too_long ? shape.longest2 / longest2_ : -shape.sine2;
   }
 
   /// Is the angle at this corner an angle of the graph itself? No vertex can improve it.

@@ -3,6 +3,7 @@
 
 // The visitor's header does not include what it uses, so it comes last.
 // clang-format off
+#include <CGAL/Delaunay_mesh_size_criteria_2.h>
 #include <CGAL/Mesh_2/Clusters.h>
 #include <CGAL/Mesh_2/Refine_edges_with_clusters.h>
 #include <CGAL/Mesh_2/Refine_faces.h>
@@ -11,7 +12,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <queue>
 #include <utility>
 #include <vector>
 
@@ -119,7 +119,7 @@ class EdgeSplitting : public CGAL::Mesh_2::Refine_edges_base_with_clusters<Cdt, 
 class YoungestFirst {
  public:
   void clear() { entries_.clear(); }
-  void push(Cdt::Face_handle face, double /*urgency*/) { entries_.emplace_back(face, face->ticket()); }
+  void push(Cdt::Face_handle face) { entries_.emplace_back(face, face->ticket()); }
   void pop() { entries_.pop_back(); }
   [[nodiscard]] Cdt::Face_handle top() const { return entries_.back().first; }
   /// Drops what is out of date, then tells whether anything is left.
@@ -132,32 +132,8 @@ class YoungestFirst {
   std::vector<std::pair<Cdt::Face_handle, std::uint32_t>> entries_;
 };
 
-/// Bad faces by urgency, equals in order of arrival, as CGAL's mesher and so the paper's takes them; the same lazy deletion.
-class WorstFirst {
- public:
-  void clear() { entries_ = {}; }
-  void push(Cdt::Face_handle face, double urgency) { entries_.push({urgency, face->ticket(), face}); }
-  void pop() { entries_.pop(); }
-  [[nodiscard]] Cdt::Face_handle top() const { return entries_.top().face; }
-  [[nodiscard]] bool is_empty() {
-    while (!entries_.empty() && entries_.top().face->ticket() != entries_.top().ticket) entries_.pop();
-    return entries_.empty();
-  }
-
- private:
-  struct Entry {
-    double urgency;
-    std::uint32_t ticket;
-    Cdt::Face_handle face;
-    bool operator<(const Entry& other) const {
-      return urgency != other.urgency ? urgency < other.urgency : ticket > other.ticket;
-    }
-  };
-  std::priority_queue<Entry> entries_;
-};
-
-/// Face level of Delaunay refinement, with a queue of our choice.
-template <class Triangulation, class Bounds, class EdgeLevel, class Queue>
+/// Face level of Delaunay refinement with that queue.
+template <class Triangulation, class Bounds, class EdgeLevel>
 class FaceSplitting : public CGAL::Triangulation_mesher_level_traits_2<Triangulation>, public CGAL::No_after_no_insertion {
  public:
   using FaceHandle = typename Triangulation::Face_handle;
@@ -247,24 +223,23 @@ class FaceSplitting : public CGAL::Triangulation_mesher_level_traits_2<Triangula
 
  private:
   void enqueue_if_bad(FaceHandle face) {
-    if (!face->is_in_domain()) return;
-    const auto shape = Bounds::measure(face);
-    const auto verdict = bounds_.judge(face, shape);
-    if (verdict == Bounds::Verdict::good) return;
+    if (!face->is_in_domain() || bounds_.judge(face, Bounds::measure(face)) == Bounds::Verdict::good) return;
     if (++ticket_ == 0) ++ticket_;
     face->set_ticket(ticket_);
-    queue_.push(face, bounds_.urgency(verdict, shape));
+    queue_.push(face);
   }
 
   Bounds& bounds_;
   EdgeLevel& edges_;
-  Queue queue_;
+  YoungestFirst queue_;
   std::uint32_t ticket_ = 0;
 };
 
 using EdgeLevel = CGAL::Mesh_2::Refine_edges_with_clusters<Cdt, ConformsAboveFloor, EdgeSplitting>;
-template <class Queue>
-using FaceLevel =
-    CGAL::Mesh_2::Refine_faces<Cdt, const MeshBounds, EdgeLevel, FaceSplitting<Cdt, const MeshBounds, EdgeLevel, Queue>>;
+using FaceLevel = CGAL::Mesh_2::Refine_faces<Cdt, const MeshBounds, EdgeLevel, FaceSplitting<Cdt, const MeshBounds, EdgeLevel>>;
+
+/// The paper's: all CGAL. Its queue takes the worst first, and equals in an order that no simpler queue repeats.
+using PaperCriteria = CGAL::Delaunay_mesh_size_criteria_2<Cdt>;
+using PaperFaceLevel = CGAL::Mesh_2::Refine_faces<Cdt, PaperCriteria, EdgeLevel>;
 
 }  // namespace pcbmesh::triangulate

@@ -26,16 +26,16 @@ namespace {
       spot);
 }
 
-template <class Queue>
-void refine_with(Cdt& cdt, const MeshBounds& bounds, EdgeSplittingSetup setup, const RefineLimits& limits,
+template <class Faces, class Criteria>
+void refine_with(Cdt& cdt, Criteria& criteria, const EdgeSplittingSetup& setup, const RefineLimits& limits,
                  const Progress& progress) {
   CGAL::Mesh_2::Clusters<Cdt> clusters(cdt);
   CGAL::Null_mesher_level no_level;
   CGAL::Null_mesh_visitor no_visitor;
   EdgeLevel edges(cdt, clusters, no_level);
   edges.configure(setup);
-  FaceLevel<Queue> faces(cdt, bounds, edges);
-  CGAL::Mesh_2::Refine_edges_visitor_from_faces<FaceLevel<Queue>> visitor(faces, edges, no_visitor);
+  Faces faces(cdt, criteria, edges);
+  CGAL::Mesh_2::Refine_edges_visitor_from_faces<Faces> visitor(faces, edges, no_visitor);
   clusters.create_clusters();
   edges.scan_triangulation();
   faces.scan_triangulation();
@@ -50,13 +50,14 @@ void refine_with(Cdt& cdt, const MeshBounds& bounds, EdgeSplittingSetup setup, c
 
 }  // namespace
 
-void refine(Cdt& cdt, const MeshBounds& bounds, const GraphEdgeIndex& graph_edges, const RefineLimits& limits, bool worst_first,
+void refine(Cdt& cdt, const MeshBounds& bounds, const GraphEdgeIndex& graph_edges, const RefineLimits& limits, bool as_in_paper,
             const Progress& progress) {
-  const EdgeSplittingSetup setup{&graph_edges, bounds.floor(), limits.unit_nm, worst_first};
-  if (worst_first) {
-    refine_with<WorstFirst>(cdt, bounds, setup, limits, progress);
+  const EdgeSplittingSetup setup{&graph_edges, bounds.floor(), limits.unit_nm, as_in_paper};
+  if (as_in_paper) {
+    PaperCriteria criteria(bounds.sine2_bound(), bounds.longest_edge());
+    refine_with<PaperFaceLevel>(cdt, criteria, setup, limits, progress);
   } else {
-    refine_with<YoungestFirst>(cdt, bounds, setup, limits, progress);
+    refine_with<FaceLevel>(cdt, bounds, setup, limits, progress);
   }
 }
 

@@ -18,8 +18,8 @@ struct RefineLimits {
 
 /// Delaunay refinement of the faces marked in_domain. New vertices on graph edges carry the edge in their Origin.
 /// @throws Error triangulation_limit (404), cancelled (103).
-/// @param worst_first  CGAL's order of work and closed diametral circles instead of ours
-void refine(Cdt& cdt, const MeshBounds& bounds, const GraphEdgeIndex& graph_edges, const RefineLimits& limits, bool worst_first,
+/// @param as_in_paper  CGAL's own queue and criteria (so no grading) and closed diametral circles
+void refine(Cdt& cdt, const MeshBounds& bounds, const GraphEdgeIndex& graph_edges, const RefineLimits& limits, bool as_in_paper,
             const Progress& progress);
 
 }  // namespace pcbmesh::triangulate

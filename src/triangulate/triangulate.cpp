@@ -60,6 +60,8 @@ void check(const TriangulateOptions& options) {
   if (options.grading && options.seed == Seed::hexagonal) {
     throw Error(ErrorCode::usage, "the hexagonal seed has edges of one length; leave out grading, or take the Delaunay seed");
   }
+  if (options.grading && options.as_in_paper)
+    throw Error(ErrorCode::usage, "the paper's meshes are not graded: drop one of the two");
 }
 
 std::vector<SegmentDistance::Segment> copper_segments(const mesh::PlanarGraph& graph, const model::Model& model,

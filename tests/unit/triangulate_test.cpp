@@ -522,7 +522,8 @@ TEST(Triangulate, NonsenseOptionsAreRefused) {
   for (const TriangulateOptions& options :
        {TriangulateOptions{.longest_edge_nm = 0}, TriangulateOptions{.longest_edge_nm = NAN},
         TriangulateOptions{.min_angle_deg = 0}, TriangulateOptions{.min_angle_deg = 33},
-        TriangulateOptions{.grading = Grading{.edge_at_copper_nm = -1}}}) {
+        TriangulateOptions{.grading = Grading{.edge_at_copper_nm = -1}},
+        TriangulateOptions{.grading = Grading{.edge_at_copper_nm = 1e5}, .as_in_paper = true}}) {
     EXPECT_THROW(run(board_with_pads(), options), Error);
   }
 }
@@ -566,6 +567,12 @@ TEST(Triangulate, PaperSerpentineHasItsTriangles) {
   EXPECT_NEAR(shortest_h, 0.282843, 1e-6);
   EXPECT_NEAR(sum_h / count, 0.6594, 0.006594);
   EXPECT_NEAR(longest_h, 2.28, 0.0456);
+  const auto count_at = [&](double longest_nm) {
+    return static_cast<double>(run(drawing, {.longest_edge_nm = longest_nm, .as_in_paper = true}).mesh.num_triangles());
+  };
+  EXPECT_NEAR(count_at(659'400), 717, 7.17);
+  EXPECT_NEAR(count_at(std::sqrt(8e10)), 3372, 33.72);
+  EXPECT_NEAR(count_at(100'000), 27152, 271.52);
 }
 
 }  // namespace

@@ -46,7 +46,8 @@ struct OverlayResult {
   mesh::PlanarGraph graph;
   std::vector<SnapRecord> ledger;  ///< copper and hole bodies, ascending
   OverlayStatistics statistics;
-  /// Per net: connected pieces of copper (layers joined by barrels) in the exact layout within the domain; 0 = none there.
+  /// Per net: connected pieces of copper (layers joined by barrels) in the layout within the domain; 0 = none there. Pieces of
+  /// one net less than a micrometre apart, or joined by less, count as snapped (warning overlay.parts_joined).
   std::vector<std::int32_t> net_pieces;
   /// Pairs of nets (a < b) whose copper touches or overlaps in the exact layout itself.
   std::vector<std::array<std::int32_t, 2>> touching_nets;
@@ -62,7 +63,8 @@ struct OverlayResult {
 /// @guarantee O1  the graph has no crossing, no overlap, and no vertex within the tolerance of a foreign edge (tolerance/2
 /// where
 ///                the guard needed it)
-/// @guarantee O2  nets that touch still touch, nets apart stay apart, each body keeps its number of components
+/// @guarantee O2  nets that touch still touch, nets apart stay apart, each body keeps its number of components; gaps and necks
+///                below 1 um within one net are the exception, each with a warning; parts thinner than 1 um are left out (note)
 /// @guarantee O3  same input and options give the same bytes
 /// @throws Error overlay_topology (401) naming the body, net and place; overlay_no_fixpoint (402); cancelled (103).
 /// @cost near-linear in vertices plus crossings.

@@ -53,10 +53,10 @@ enum class TriangleSeed {
 
 /// How a layer of height H is cut by the common height h.
 enum class SublayerRule {
-  floor,   ///< max(1, floor(H/h)): what the paper's tables imply
-  round,   ///< max(1, round(H/h))
-  ceil,    ///< ceil(H/h)
-  none,    ///< one sub-layer per layer
+  floor,     ///< max(1, floor(H/h)): what the paper's tables imply
+  round,     ///< max(1, round(H/h))
+  ceil,      ///< ceil(H/h)
+  none,      ///< one sub-layer per layer
   optimal,   ///< exact thresholds F10 on the final mesh's mean optimal height
   best_mean  ///< the counts of greatest plain mean quality on the final mesh (Dinkelbach); the plain mean can be gamed
 };

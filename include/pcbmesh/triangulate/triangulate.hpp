@@ -32,7 +32,7 @@ struct TriangulateOptions {
   Seed seed = Seed::delaunay;  ///< hexagonal excludes grading; the lattice's edge is longest_edge_nm * lattice_over_longest
   bool smooth = false;         ///< guarded smoothing of the vertices inside faces; angle and edge bounds still hold
   std::int64_t max_vertices = 50'000'000;
-  /// Millimetre doubles and the worst triangle first, as the paper's program had them: reproduces its triangle counts, which
+  /// CGAL's stock mesher on millimetre doubles, as the paper's program had it: reproduces its triangle counts, which
   /// hang on rounding (a right angle is not quite right in binary millimetres). Slower, and unsafe for near-coincident edges.
   bool as_in_paper = false;
 };

@@ -21,12 +21,15 @@ def boards():
 
 
 def region_nets(board):
-    """Two nets for a region: routed on at least one layer, with pads, of middling size: what an engineer would characterise."""
+    """The nets of a region: the shortest routed differential pair of the board, else its shortest routed net with two pads."""
     info = run_json("inspect", board, "--quiet")
-    routed = [n for n in info["nets"] if n["name"] and n["tracks"] and n["pads"] >= 2 and n["tracks"] + n["vias"] <= 400]
-    routed.sort(key=lambda n: (-(n["tracks"] + n["vias"]), n["name"]))
-    middle = routed[len(routed) // 2:] or routed
-    return [n["name"] for n in middle[:2]]
+    routed = {n["name"]: n for n in info["nets"] if n["name"] and n["tracks"] and n["pads"] >= 2}
+    size = {name: n["tracks"] + n["vias"] for name, n in routed.items()}
+    pairs = [(size[name] + size[other], name, other) for name in routed for plus, minus in (("P", "N"), ("+", "-"), ("p", "n"))
+             if name.endswith(plus) for other in [name[:-1] + minus] if other in routed]
+    if pairs:
+        return list(min(pairs)[1:])
+    return [min((count, name) for name, count in size.items())[1]]
 
 
 def mesh(board, folder):

@@ -95,21 +95,6 @@ Json compat_json(const mesh::PlanarMesh& planar, const CompatLayers& compat, boo
           {"volume_weighted_prism", mean.weighted.total() / mean.volume.total()}};
 }
 
-/// The paper's meshes have no regions to extrude, so their prisms are summed one by one.
-Json summed_json(const mesh::PlanarMesh& planar, const mesh::LayerPlan& plan) {
-  PrismMean mean;
-  for (std::int32_t t = 0; t < planar.num_triangles(); ++t) {
-    const auto squared = planar.squared_edges_m2(t);
-    for (std::int32_t k = 0; k < plan.num_sublayers(); ++k)
-      mean.add(planar.area_m2(t), squared[0] + squared[1] + squared[2], plan.height_m(k));
-  }
-  return {{"sublayers", plan.num_sublayers()},
-          {"prisms", mean.num_prisms},
-          {"mean_prism", mean.quality.total() / static_cast<double>(mean.num_prisms)},
-          {"volume_weighted_prism", mean.weighted.total() / mean.volume.total()},
-          {"volume_m3", mean.volume.total()}};
-}
-
 /// The product's own way: extruded, tagged, measured.
 Json extruded_json(const mesh::PlanarMesh& planar, const mesh::LayerPlan& plan, const model::Model& model,
                    const overlay::OverlayResult& graph) {
@@ -204,24 +189,26 @@ Example read_example(const std::filesystem::path& board_file) {
 
 Json measure_cases(const std::filesystem::path& board_file, const CompatLayers& compat) {
   const Example example = read_example(board_file);
-  const auto mesh_at = [&](double edge_m) { return mesh_with_cgal(example.graph.graph, edge_m * 1e3); };
-  const auto our_mesh_at = [&](double edge_m) {
-    Diagnostics diagnostics;
-    triangulate::TriangulateOptions options;
-    options.longest_edge_nm = edge_m / metres_per_nm;
-    return triangulate::triangulate(example.graph.graph, example.model, options, diagnostics).mesh;
+  const auto mesher = [&](bool as_in_paper) {
+    return [&example, as_in_paper](double edge_m) {
+      Diagnostics diagnostics;
+      triangulate::TriangulateOptions options;
+      options.longest_edge_nm = edge_m / metres_per_nm;
+      options.as_in_paper = as_in_paper;
+      return triangulate::triangulate(example.graph.graph, example.model, options, diagnostics).mesh;
+    };
+  };
+  const auto measure = [&](const mesh::PlanarMesh& planar, const mesh::LayerPlan& plan) {
+    return extruded_json(planar, plan, example.model, example.graph);
   };
   double stack_m = 0;
   for (const model::Slab& slab : example.model.slabs())
     stack_m += static_cast<double>(slab.z_top_nm - slab.z_bottom_nm) * metres_per_nm;
   return {{"board", board_file.filename().string()},
           {"stack_m", stack_m},
-          {"initial_heights_m", all_heights_json(mesh_at(longest_edge_m))},
-          {"cases", case_rows(example, compat, mesh_at, summed_json)},
-          {"product_cases",
-           case_rows(example, compat, our_mesh_at, [&](const mesh::PlanarMesh& planar, const mesh::LayerPlan& plan) {
-             return extruded_json(planar, plan, example.model, example.graph);
-           })}};
+          {"initial_heights_m", all_heights_json(mesher(true)(longest_edge_m))},
+          {"cases", case_rows(example, compat, mesher(true), measure)},
+          {"product_cases", case_rows(example, compat, mesher(false), measure)}};
 }
 
 }  // namespace pcbmesh::validation::paper

@@ -6,9 +6,6 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "pcbmesh/mesh/planar_graph.hpp"
-#include "pcbmesh/mesh/planar_mesh.hpp"
-
 namespace pcbmesh::validation::paper {
 
 /// Table 1: the two height rules on `count` triangles with corners uniform in the unit square, both on the same sample.
@@ -23,12 +20,9 @@ struct CompatLayers {
   std::vector<std::int32_t> first_counts;  ///< sub-layers of each in case 1; cases 2 to 5 cut nothing
 };
 
-/// What the authors used: CGAL's own 2D mesher on millimetre doubles, angle bound B = 0.125. One region, no constraints
-/// listed. @unit longest edge in mm.
-[[nodiscard]] mesh::PlanarMesh mesh_with_cgal(const mesh::PlanarGraph& graph, double longest_edge_mm);
-
-/// Tables 3 and 4: all five cases on one board, with CGAL's mesher ("cases") and with the product's ("product_cases").
-/// Each with the compat layers and, in clean mode (every layer of the board really cut), for every sub-layer rule.
+/// Tables 3 and 4: all five cases on one board, with CGAL's way of refinement as the authors had it ("cases") and with the
+/// product's ("product_cases"). Each with the compat layers and, in clean mode (every layer of the board really cut), for every
+/// sub-layer rule.
 [[nodiscard]] nlohmann::ordered_json measure_cases(const std::filesystem::path& board, const CompatLayers& compat);
 
 }  // namespace pcbmesh::validation::paper
