@@ -12,6 +12,7 @@
 #include "pcbmesh/pipeline/write_outputs.hpp"
 #include "src/cli/commands.hpp"
 #include "src/cli/mesh_report.hpp"
+#include "src/cli/quality_text.hpp"
 #include "src/cli/study_options.hpp"
 #include "src/cli/terminal.hpp"
 
@@ -21,7 +22,8 @@ namespace {
 struct Options {
   std::string board, from, to, msh_version;
   std::vector<std::string> outputs;
-  bool ascii = false, no_check = false, json = false, dry_run = false, quiet = false, warnings_as_errors = false;
+  bool ascii = false, no_check = false, json = false, dry_run = false, quality = false, quiet = false,
+       warnings_as_errors = false;
   int threads = 2;
   std::shared_ptr<StudyOptions> study;
 };
@@ -57,7 +59,9 @@ int run(const Options& options) {
   if (!options.quiet) print_diagnostics(result.diagnostics);
   require_no_warnings(options, result.diagnostics);
 
-  MeshRun mesh_run{read.board, result, nullptr, {}};
+  MeshRun mesh_run{read.board, result, {}, nullptr, {}};
+  // For a mesh that is thrown away the tables are made only where somebody will see them.
+  if (!options.dry_run || options.json || options.quality) mesh_run.quality = layering::quality_report(result.mesh);
   pipeline::OutputResult written;
   if (!options.dry_run) {
     written = pipeline::write_outputs(result, output, progress);
@@ -71,7 +75,7 @@ int run(const Options& options) {
   if (options.json)
     fmt::print("{}\n", report_json(mesh_run));
   else if (!options.quiet)
-    fmt::print("{}", report_text(mesh_run));
+    fmt::print("{}{}", report_text(mesh_run), options.quality ? quality_text(mesh_run.quality) : "");
   return written.report && !written.report->passed() ? 1 : 0;
 }
 
@@ -94,6 +98,8 @@ Command add_mesh_command(CLI::App& program) {
   command->add_flag("--no-check", options->no_check, "Do not read the written mesh back and judge it")->group(output);
   command->add_flag("--dry-run", options->dry_run, "Do everything but write: exact counts")->group(output);
   command->add_flag("--json", options->json, "Print the report as JSON")->group(output);
+  command->add_flag("--quality", options->quality, "Print quality by layer, material and net, histograms and the worst prisms")
+      ->group(output);
   command->add_flag("--quiet", options->quiet, "Print errors alone")->group(output);
   command->add_flag("--warnings-as-errors", options->warnings_as_errors, "Stop if anything was skipped or assumed")
       ->group(output);

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pcbmesh/base/version.hpp"
+#include "src/cli/quality_text.hpp"
 #include "src/cli/terminal.hpp"
 
 namespace pcbmesh::cli {
@@ -87,7 +88,9 @@ std::string report_json(const MeshRun& run) {
              {"total_area_error", r.overlay.total_area_error},
              {"largest_moves", ledger_json(r.ledger)}}},
            {"triangulation",
-            {{"longest_edge_bound_m", r.fed_back ? r.common_height_m : static_cast<double>(*r.resolved.longest_edge) * 1e-9},
+            {{"seed", study::name_of(r.resolved.seed)},
+             {"smooth", r.resolved.smooth},
+             {"longest_edge_bound_m", r.fed_back ? r.common_height_m : static_cast<double>(*r.resolved.longest_edge) * 1e-9},
              {"min_angle_deg", r.triangulate.min_angle_deg},
              {"triangles_below_bound", r.triangulate.num_below_bound},
              {"input_vertices", r.triangulate.num_input_vertices},
@@ -109,6 +112,7 @@ std::string report_json(const MeshRun& run) {
              {"quantile1_prism", r.quality.quantile1_prism},
              {"shortest_edge_m", r.quality.shortest_edge_m},
              {"longest_edge_m", r.quality.longest_edge_m}}},
+           {"quality_report", quality_json(run.quality)},
            {"cpu_s", times},
            {"peak_memory_mib", peak_memory_mib()},
            {"diagnostics", diagnostics_json(r.diagnostics)},

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "pcbmesh/board/board.hpp"
+#include "pcbmesh/layering/quality_report.hpp"
 #include "pcbmesh/pipeline/mesh_board.hpp"
 #include "pcbmesh/validation/report.hpp"
 
@@ -14,6 +15,7 @@ namespace pcbmesh::cli {
 struct MeshRun {
   const board::Board& board;
   const pipeline::MeshBoardResult& result;
+  layering::QualityReport quality;
   const validation::Report* check = nullptr;  ///< null: not checked
   std::vector<std::string> files;             ///< written, in order
 };

@@ -73,11 +73,15 @@ std::shared_ptr<StudyOptions> add_study_options(CLI::App& command) {
   command.add_option("--min-angle", o->min_angle, "Angle bound in degrees (default 20.7)")->group(sizes);
   command.add_option("--edge-at-copper", o->edge_at_copper, "Graded size: edge length at copper outlines")->group(sizes);
   command.add_option("--growth", o->growth, "Graded size: edge length gained per distance (default 0.3)")->group(sizes);
+  command.add_option("--seed", o->seed, "Triangles start from: delaunay (the outlines alone) or hex (a hexagonal lattice)")
+      ->group(sizes);
+  command.add_flag("--smooth", o->smooth, "Smooth the triangles; angle bound, size bound and outlines hold")->group(sizes);
   command
       .add_option("--policy", o->policy,
                   "Common prism height: none, basic, average, maximum, minimum, thinnest_layer, or the paper's case 1 to 5")
       ->group(sizes);
-  command.add_option("--sublayers", o->sublayers, "Cutting of layers: floor, round, ceil, none, optimal")->group(sizes);
+  command.add_option("--sublayers", o->sublayers, "Cutting of layers: floor, round, ceil, none, optimal, best_mean")
+      ->group(sizes);
   command.add_option("--tolerance", o->tolerance, "Snapping tolerance: auto or a length (default auto)")->group(sizes);
   command.add_option("--arc-sagitta", o->arc_sagitta, "Largest distance of chord and arc (default 5um)")->group(sizes);
   command.add_option("--unit", o->unit, "Unit written to the mesh: m (default), mm, um")->group(sizes);
@@ -109,6 +113,8 @@ study::Study study_from(const StudyOptions& o) {
   if (o.min_angle != 0) s.min_angle_deg = o.min_angle;
   if (!o.edge_at_copper.empty()) s.edge_at_copper = parse_length(o.edge_at_copper);
   if (o.growth != 0) s.growth = o.growth;
+  if (!o.seed.empty()) s.seed = study::parse_triangle_seed(o.seed);
+  if (o.smooth) s.smooth = true;
   if (!o.policy.empty()) s.policy = study::parse_height_policy(o.policy);
   if (!o.sublayers.empty()) s.sublayers = study::parse_sublayer_rule(o.sublayers);
   if (o.tolerance == "auto")

@@ -98,20 +98,64 @@ int num_sublayers(SublayerRule rule, double layer_height_m, double common_height
       return to_count(std::ceil(ratio - ratio_tolerance));
     case SublayerRule::none:
     case SublayerRule::optimal:
+    case SublayerRule::best_mean:  // not layer by layer
       break;
   }
   report_bug("known sub-layer rule", __FILE__, __LINE__);
 }
 
+std::vector<int> best_mean_counts(std::span<const double> layer_heights_m, const HeightStatistics& final_heights) {
+  require_positive(final_heights.average, "the mean optimal height of the final mesh");
+  // Quality by count of each layer, well past the count of its best quality: beyond, more cuts only lose.
+  std::vector<std::vector<double>> quality;
+  for (const double height : layer_heights_m) {
+    require_positive(height, "a layer height");
+    const int most =
+        std::min(2 * optimal_cuts(height, final_heights.minimum) + 2, 2 * optimal_cuts(height, final_heights.average) + 8);
+    std::vector<double>& of_layer = quality.emplace_back();
+    for (int n = 1; n <= std::min(most, most_sublayers_of_slab); ++n)
+      of_layer.push_back(mean_quality_at(final_heights, height / n));
+  }
+  std::vector<int> counts(quality.size(), 1), best;
+  for (int round = 0; round < 100 && counts != best; ++round) {
+    best = counts;
+    double sum = 0, total = 0;
+    for (std::size_t i = 0; i < quality.size(); ++i) {
+      sum += best[i] * quality[i][static_cast<std::size_t>(best[i] - 1)];
+      total += best[i];
+    }
+    const double ratio = sum / total;
+    for (std::size_t i = 0; i < quality.size(); ++i) {
+      double most = -std::numeric_limits<double>::infinity();
+      for (std::size_t n = 1; n <= quality[i].size(); ++n) {
+        const double gain = static_cast<double>(n) * (quality[i][n - 1] - ratio);
+        if (gain > most + 1e-12) {  // on a tie the smaller
+          most = gain;
+          counts[i] = static_cast<int>(n);
+        }
+      }
+    }
+  }
+  return best;
+}
+
 mesh::LayerPlan choose_layers(std::span<const model::Slab> slabs, SublayerRule rule, std::optional<double> common_height_m,
                               const HeightStatistics& final_heights) {
   if (slabs.empty()) throw Error(ErrorCode::layering_invalid, "the domain has no layers to cut");
+  std::vector<int> best_counts;
+  if (rule == SublayerRule::best_mean) {
+    std::vector<double> heights;
+    for (const model::Slab& slab : slabs) heights.push_back(height_m(slab));
+    best_counts = best_mean_counts(heights, final_heights);
+  }
   mesh::LayerPlanParts parts;
   parts.z_m.push_back(static_cast<double>(slabs.front().z_bottom_nm) * metres_per_nm);
   for (std::size_t s = 0; s < slabs.size(); ++s) {
     const model::Slab& slab = slabs[s];
     const bool is_cut = common_height_m.has_value() || rule == SublayerRule::optimal;
-    const int count = is_cut ? num_sublayers(rule, height_m(slab), common_height_m.value_or(0), final_heights) : 1;
+    const int count = !best_counts.empty() ? best_counts[s]
+                      : is_cut             ? num_sublayers(rule, height_m(slab), common_height_m.value_or(0), final_heights)
+                                           : 1;
     if (count > most_sublayers_of_slab || static_cast<std::int64_t>(parts.slab.size()) + count > most_sublayers) {
       Spot spot;
       spot.layer = slab.layer;

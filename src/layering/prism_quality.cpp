@@ -2,8 +2,10 @@
 #include "pcbmesh/layering/prism_quality.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "pcbmesh/base/running_sum.hpp"
 
@@ -57,6 +59,12 @@ double nine_edge_quality(double area, double beta, double height) {
   return 36.0 * sqrt3 * area * height / power_three_halves(2.0 * beta + 3.0 * height * height);
 }
 
+double mean_quality_at(const HeightStatistics& heights, double height) {
+  RunningSum sum;
+  for (const HeightBin& bin : heights.bins) sum.add(bin.sum_quality * quality_falloff(height / bin.height));
+  return sum.total() / static_cast<double>(heights.num_triangles);
+}
+
 HeightStatistics height_statistics(const mesh::PlanarMesh& mesh) {
   HeightStatistics result;
   const std::int32_t num_triangles = mesh.num_triangles();
@@ -66,14 +74,26 @@ HeightStatistics height_statistics(const mesh::PlanarMesh& mesh) {
     return optimal_height(squared[0] + squared[1] + squared[2]);
   };
   RunningSum height_sum, quality_sum;
+  struct Sums {
+    double quality = 0, height = 0, count = 0;
+  };
+  std::map<std::uint32_t, Sums> sums;  // few hundred at most; ascending
   result.minimum = std::numeric_limits<double>::max();
   for (std::int32_t t = 0; t < num_triangles; ++t) {
     const double height = height_of(t);
     result.minimum = std::min(result.minimum, height);
     result.maximum = std::max(result.maximum, height);
     height_sum.add(height);
-    quality_sum.add(triangle_quality(mesh.area_m2(t), 2.0 * height * height));
+    const double quality = triangle_quality(mesh.area_m2(t), 2.0 * height * height);
+    quality_sum.add(quality);
+    // The upper bits of a positive float grow with its value: exponent and 7 bits of mantissa are the bin.
+    Sums& bin = sums[std::bit_cast<std::uint32_t>(static_cast<float>(height)) >> 16U];
+    bin.quality += max_prism_quality * quality;
+    bin.height += height;
+    bin.count += 1;
   }
+  result.num_triangles = num_triangles;
+  for (const auto& [key, bin] : sums) result.bins.push_back({bin.height / bin.count, bin.quality});
   result.average = height_sum.total() / num_triangles;
   result.mean_triangle_quality = quality_sum.total() / num_triangles;
   for (std::int32_t t = 0; t < num_triangles; ++t) result.num_below_average += height_of(t) < result.average ? 1 : 0;

@@ -104,6 +104,8 @@ MeshBoardResult mesh_board(const board::Board& board, const study::Study& study,
   options.longest_edge_nm = static_cast<double>(*resolved.longest_edge);
   options.min_angle_deg = study.min_angle_deg;
   if (study.edge_at_copper) options.grading = triangulate::Grading{static_cast<double>(*study.edge_at_copper), study.growth};
+  options.seed = study.seed == study::TriangleSeed::hex ? triangulate::Seed::hexagonal : triangulate::Seed::delaunay;
+  options.smooth = study.smooth;
   triangulate::TriangulateResult planar =
       timed("triangulate", [&] { return triangulate::triangulate(graph.graph, model, options, diagnostics, progress); });
 

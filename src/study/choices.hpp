@@ -33,11 +33,14 @@ inline constexpr std::array<Choice<HeightPolicy>, 6> policy_names{{{HeightPolicy
                                                                    {HeightPolicy::maximum, "maximum"},
                                                                    {HeightPolicy::minimum, "minimum"},
                                                                    {HeightPolicy::thinnest_layer, "thinnest_layer"}}};
-inline constexpr std::array<Choice<SublayerRule>, 5> sublayer_names{{{SublayerRule::floor, "floor"},
+inline constexpr std::array<Choice<SublayerRule>, 6> sublayer_names{{{SublayerRule::floor, "floor"},
                                                                      {SublayerRule::round, "round"},
                                                                      {SublayerRule::ceil, "ceil"},
                                                                      {SublayerRule::none, "none"},
-                                                                     {SublayerRule::optimal, "optimal"}}};
+                                                                     {SublayerRule::optimal, "optimal"},
+                                                                     {SublayerRule::best_mean, "best_mean"}}};
+inline constexpr std::array<Choice<TriangleSeed>, 2> seed_names{
+    {{TriangleSeed::delaunay, "delaunay"}, {TriangleSeed::hex, "hex"}}};
 inline constexpr std::array<Choice<geometry::ArcMode>, 4> arc_names{{{geometry::ArcMode::inscribed, "inscribed"},
                                                                      {geometry::ArcMode::circumscribed, "circumscribed"},
                                                                      {geometry::ArcMode::equal_area, "equal_area"},

@@ -56,6 +56,9 @@ void check_mesh(const Study& study) {
                        study.min_angle_deg));
   if (!(study.growth > 0 && study.growth <= 10))
     refuse("/mesh/growth", fmt::format("{} is out of range; expected above 0 and up to 10", study.growth));
+  if (study.edge_at_copper && study.seed == TriangleSeed::hex)
+    refuse("/mesh/seed",
+           "the hexagonal lattice has edges of one length, but edge_at_copper asks for graded ones; leave one out");
   if (study.tolerance) require_length("/mesh/tolerance", *study.tolerance, 1, nm_per_mm);
 }
 
@@ -73,6 +76,9 @@ std::string_view name_of(HeightPolicy value) {
 std::string_view name_of(SublayerRule value) {
   return name_in(sublayer_names, value);
 }
+std::string_view name_of(TriangleSeed value) {
+  return name_in(seed_names, value);
+}
 
 HeightPolicy parse_height_policy(std::string_view text) {
   constexpr std::array<std::string_view, 5> paper_cases{"1", "2", "3", "4", "5"};
@@ -82,6 +88,9 @@ HeightPolicy parse_height_policy(std::string_view text) {
 }
 SublayerRule parse_sublayer_rule(std::string_view text) {
   return value_in(sublayer_names, text, "sub-layer rule");
+}
+TriangleSeed parse_triangle_seed(std::string_view text) {
+  return value_in(seed_names, text, "triangle seed");
 }
 ConductorMode parse_conductor_mode(std::string_view text) {
   return value_in(conductor_names, text, "conductor mode");
@@ -93,9 +102,10 @@ bool Study::operator==(const Study& other) const {
          (!box || same_box(*box, *other.box)) && conductors == other.conductors && conductor_rules == other.conductor_rules &&
          air_above == other.air_above && air_below == other.air_below && air_around == other.air_around &&
          frequency_hz == other.frequency_hz && longest_edge == other.longest_edge && min_angle_deg == other.min_angle_deg &&
-         edge_at_copper == other.edge_at_copper && growth == other.growth && policy == other.policy &&
-         sublayers == other.sublayers && tolerance == other.tolerance && arcs.sagitta_nm == other.arcs.sagitta_nm &&
-         arcs.mode == other.arcs.mode && unit == other.unit && max_prisms == other.max_prisms;
+         edge_at_copper == other.edge_at_copper && growth == other.growth && seed == other.seed && smooth == other.smooth &&
+         policy == other.policy && sublayers == other.sublayers && tolerance == other.tolerance &&
+         arcs.sagitta_nm == other.arcs.sagitta_nm && arcs.mode == other.arcs.mode && unit == other.unit &&
+         max_prisms == other.max_prisms;
 }
 
 void check(const Study& study) {

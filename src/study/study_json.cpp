@@ -95,14 +95,16 @@ void read_frequency(const JsonValue& field, Study& study) {
 }
 
 void read_mesh(const JsonValue& object, Study& study) {
-  object.allow_only(
-      {"frequency", "longest_edge", "min_angle_deg", "edge_at_copper", "growth", "height_policy", "sublayers", "tolerance"});
+  object.allow_only({"frequency", "longest_edge", "min_angle_deg", "edge_at_copper", "growth", "seed", "smooth",
+                     "height_policy", "sublayers", "tolerance"});
   if (const auto field = object.find_set("frequency")) read_frequency(*field, study);
   read_optional_length(object, "longest_edge", study.longest_edge);
   read_optional_length(object, "edge_at_copper", study.edge_at_copper);
   read_optional_length(object, "tolerance", study.tolerance);
   if (const auto field = object.find("min_angle_deg")) study.min_angle_deg = field->as_number();
   if (const auto field = object.find("growth")) study.growth = field->as_number();
+  read_choice(object, "seed", seed_names, study.seed);
+  if (const auto field = object.find("smooth")) study.smooth = field->as_boolean();
   read_choice(object, "sublayers", sublayer_names, study.sublayers);
   const auto policy = object.find("height_policy");
   if (!policy) return;
@@ -230,6 +232,8 @@ std::string to_json(const Study& study) {
   mesh["min_angle_deg"] = study.min_angle_deg;
   mesh["edge_at_copper"] = optional_length(study.edge_at_copper);
   mesh["growth"] = study.growth;
+  mesh["seed"] = name_of(study.seed);
+  mesh["smooth"] = study.smooth;
   mesh["height_policy"] = name_of(study.policy);
   mesh["sublayers"] = name_of(study.sublayers);
   mesh["tolerance"] = optional_length(study.tolerance);

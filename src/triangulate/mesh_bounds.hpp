@@ -31,6 +31,7 @@ class MeshBounds {
   [[nodiscard]] double sine2_bound() const { return sine2_bound_; }
   [[nodiscard]] double longest_edge() const { return longest_; }
   [[nodiscard]] double floor() const { return floor_; }
+  [[nodiscard]] double longest2() const { return longest2_; }
 
   [[nodiscard]] static Shape measure(const Kernel::Point_2& p, const Kernel::Point_2& q, const Kernel::Point_2& r) {
     const auto squared = [](const Kernel::Point_2& a, const Kernel::Point_2& b) {

@@ -30,6 +30,8 @@ def room_of(path):
         return parts[1]
     if parts[:2] == ("formats", "syntax"):
         return "syntax"
+    if parts[:2] == ("validation", "cases"):
+        return None  # programs that use the library as any other does, not part of it
     return parts[0] if parts[0] in ("formats", "validation") else None
 
 

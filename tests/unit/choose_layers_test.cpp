@@ -51,6 +51,31 @@ std::vector<int> sublayers_per_slab(const mesh::LayerPlan& plan) {
   return counts;
 }
 
+TEST(ChooseLayers, BestMeanIsTheBestOfAllCounts) {
+  HeightStatistics heights;
+  heights.bins = {{0.5e-4, 900}, {1.0e-4, 2000}, {1.7e-4, 1500}, {4.0e-4, 300}};
+  heights.num_triangles = 5200;
+  heights.minimum = 0.5e-4;
+  heights.average = 1.3e-4;
+  const std::vector<double> layers{0.9e-4, 1.4e-4, 4.1e-4};
+  const auto mean = [&](const std::vector<int>& counts) {
+    double sum = 0, total = 0;
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+      sum += counts[i] * mean_quality_at(heights, layers[i] / counts[i]);
+      total += counts[i];
+    }
+    return sum / total;
+  };
+  double best = 0;
+  for (int a = 1; a <= 12; ++a) {
+    for (int b = 1; b <= 12; ++b) {
+      for (int c = 1; c <= 12; ++c) best = std::max(best, mean({a, b, c}));
+    }
+  }
+  EXPECT_NEAR(mean(best_mean_counts(layers, heights)), best, 1e-12);
+  EXPECT_THROW(std::ignore = best_mean_counts(layers, {}), Error);
+}
+
 TEST(ChooseLayers, CommonHeightOfTheFivePolicies) {
   const auto slabs = serpentine();
   const auto h = [&](HeightPolicy policy) { return common_height_m(policy, paper_heights(), slabs); };

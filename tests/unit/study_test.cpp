@@ -69,6 +69,7 @@ TEST(Study, EveryFieldIsRead) {
     "conductors": {"mode": "hollow", "rules": [{"net": "A", "mode": "solid"}, {"layer": "F.Cu", "mode": "hollow"}, {"mode": "solid"}]},
     "air": {"above": 3, "below": "0mm", "around": "12mil"},
     "mesh": {"frequency": "10GHz", "longest_edge": 0.5, "min_angle_deg": 25, "edge_at_copper": "50um", "growth": 0.4,
+             "seed": "delaunay", "smooth": true,
              "height_policy": "minimum", "sublayers": "floor", "tolerance": "7um"},
     "arcs": {"sagitta": "1um", "mode": "octagon"}, "output": {"unit": "mm"}, "limits": {"max_prisms": 2e6})");
   EXPECT_EQ(s.region, RegionKind::nets);
@@ -88,6 +89,7 @@ TEST(Study, EveryFieldIsRead) {
   EXPECT_EQ(s.min_angle_deg, 25);
   EXPECT_EQ(s.edge_at_copper, 50'000);
   EXPECT_EQ(s.growth, 0.4);
+  EXPECT_TRUE(s.smooth);
   EXPECT_EQ(s.policy, HeightPolicy::minimum);
   EXPECT_EQ(s.sublayers, SublayerRule::floor);
   EXPECT_EQ(s.tolerance, 7'000);
@@ -164,8 +166,10 @@ TEST(Study, RoundTripIsExactForRandomStudies) {
     if (upto(1) == 1) s.tolerance = 1 + upto(999'999);
     s.min_angle_deg = real(0.1, 28.6);
     s.growth = real(0.01, 10);
+    if (!s.edge_at_copper) s.seed = static_cast<TriangleSeed>(upto(1));
+    s.smooth = upto(1) == 1;
     s.policy = static_cast<HeightPolicy>(upto(5));
-    s.sublayers = static_cast<SublayerRule>(upto(4));
+    s.sublayers = static_cast<SublayerRule>(upto(5));
     s.arcs = {1 + upto(999'999), static_cast<geometry::ArcMode>(upto(3))};
     s.unit = static_cast<LengthUnit>(upto(2));
     s.max_prisms = 1 + upto(std::int64_t{1} << 61);
@@ -179,7 +183,7 @@ TEST(Study, RoundTripIsExactForRandomStudies) {
 
 TEST(Study, EqualityLooksAtEveryField) {
   const Study base;
-  std::vector<Study> others(20);
+  std::vector<Study> others(22);
   std::size_t i = 0;
   others[i++].region = RegionKind::box;
   others[i++].nets = {"A"};
@@ -195,6 +199,8 @@ TEST(Study, EqualityLooksAtEveryField) {
   others[i++].min_angle_deg = 1;
   others[i++].edge_at_copper = 1;
   others[i++].growth = 1;
+  others[i++].seed = TriangleSeed::hex;
+  others[i++].smooth = true;
   others[i++].policy = HeightPolicy::none;
   others[i++].sublayers = SublayerRule::none;
   others[i++].tolerance = 1;
@@ -206,6 +212,11 @@ TEST(Study, EqualityLooksAtEveryField) {
   Study other;
   other.max_prisms = 1;
   EXPECT_FALSE(other == base);
+}
+
+TEST(Study, HexagonalSeedHasOneEdgeLength) {
+  EXPECT_EQ(parse(R"("mesh": {"seed": "hex"})").seed, TriangleSeed::hex);
+  expect_field_error(R"("mesh": {"seed": "hex", "edge_at_copper": "50um"})", {"/mesh/seed", "edge_at_copper"});
 }
 
 TEST(Study, UnknownFieldsAreErrorsWithTheNearestName) {

@@ -445,6 +445,79 @@ TEST(Triangulate, CancelsBetweenVertices) {
   }
 }
 
+Drawing board_with_features() {
+  Drawing drawing;
+  drawing.ring({domain, board}, rectangle(0, 0, 10'000'000, 6'000'000));
+  drawing.ring(copper, rectangle(1'000'000, 2'000'000, 8'000'000, 2'200'000));
+  drawing.ring(copper, circle({5'000'000, 4'000'000}, 700'000, 24));
+  drawing.ring(second, circle({5'000'000, 4'000'000}, 300'000, 16));
+  return drawing;
+}
+
+double mean_quality(const PlanarMesh& mesh) {
+  double sum = 0;
+  for (std::int32_t t = 0; t < mesh.num_triangles(); ++t) {
+    const auto [a, b, c] = mesh.squared_edges_m2(t);
+    sum += 4 * std::numbers::sqrt3 * mesh.area_m2(t) / (a + b + c);
+  }
+  return sum / mesh.num_triangles();
+}
+
+/// Length of all constrained edges and area by set of bodies: what no vertex move may change.
+std::pair<double, std::map<std::vector<std::int32_t>, double>> invariants(const PlanarMesh& mesh) {
+  double length = 0;
+  for (const auto& [a, b] : mesh.constrained()) {
+    const auto &p = mesh.points_m()[static_cast<std::size_t>(a)], &q = mesh.points_m()[static_cast<std::size_t>(b)];
+    length += std::hypot(p[0] - q[0], p[1] - q[1]);
+  }
+  std::map<std::vector<std::int32_t>, double> areas;
+  for (std::int32_t t = 0; t < mesh.num_triangles(); ++t) {
+    const auto bodies = mesh.bodies_of_region(mesh.regions()[static_cast<std::size_t>(t)]);
+    areas[{bodies.begin(), bodies.end()}] += mesh.area_m2(t);
+  }
+  return {length, areas};
+}
+
+TEST(Triangulate, SeedAndSmoothingKeepBoundsOutlinesAndRegions) {
+  const TriangulateOptions plain{.longest_edge_nm = 300'000};
+  const auto reference = invariants(run(board_with_features(), plain).mesh);
+  for (const Seed seed : {Seed::delaunay, Seed::hexagonal}) {
+    for (const bool smoothed : {false, true}) {
+      TriangulateOptions options = plain;
+      options.seed = seed;
+      options.smooth = smoothed;
+      const auto result = run(board_with_features(), options);
+      EXPECT_GE(smallest_angle_deg(result.mesh), 20.7 - 5e-3);
+      EXPECT_LE(longest_edge_nm(result.mesh), 300'000 * (1 + 1e-12));
+      const auto found = invariants(result.mesh);
+      EXPECT_NEAR(found.first, reference.first, 1e-12 * reference.first);
+      ASSERT_EQ(found.second.size(), reference.second.size());
+      for (const auto& [bodies, area] : reference.second) EXPECT_NEAR(found.second.at(bodies), area, 1e-12 * area);
+    }
+  }
+}
+
+TEST(Triangulate, SeedAndSmoothingMakeBetterTriangles) {
+  TriangulateOptions options{.longest_edge_nm = 300'000};
+  const auto plain = run(board_with_features(), options).mesh;
+  options.smooth = true;
+  const auto smoothed = run(board_with_features(), options).mesh;
+  EXPECT_GT(mean_quality(smoothed), mean_quality(plain) + 0.02);
+  options.seed = Seed::hexagonal;
+  const auto both = run(board_with_features(), options).mesh;
+  EXPECT_GT(mean_quality(both), 0.95);
+  EXPECT_EQ(both.num_triangles(), run(board_with_features(), options).mesh.num_triangles()) << "the same every time";
+}
+
+TEST(Triangulate, HexagonalSeedOfAnEmptyBoardIsNearlyEquilateral) {
+  Drawing drawing;
+  drawing.ring({domain, board}, rectangle(0, 0, 10'000'000, 10'000'000));
+  const auto mesh = run(drawing, {.longest_edge_nm = 320'000, .seed = Seed::hexagonal, .smooth = true}).mesh;
+  EXPECT_GT(mean_quality(mesh), 0.98);
+  // Equilateral triangles of the lattice's edge, 0.625 of the bound.
+  EXPECT_NEAR(mesh.num_triangles(), 1e14 / (std::numbers::sqrt3 / 4 * 200'000.0 * 200'000.0), 0.06 * 5773);
+}
+
 TEST(Triangulate, NonsenseOptionsAreRefused) {
   for (const TriangulateOptions& options :
        {TriangulateOptions{.longest_edge_nm = 0}, TriangulateOptions{.longest_edge_nm = NAN},

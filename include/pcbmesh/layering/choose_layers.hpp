@@ -27,7 +27,12 @@ namespace pcbmesh::layering {
 [[nodiscard]] int num_sublayers(study::SublayerRule rule, double layer_height_m, double common_height_m,
                                 const HeightStatistics& final_heights);
 
-/// z levels for all slabs. `common_height_m` empty: one sub-layer per slab unless the rule is optimal.
+/// Counts per layer that make the plain mean of the prism quality as great as it can be: sum of n_i g_i(n_i) over sum of n_i,
+/// solved exactly (of the binned heights) by Dinkelbach's iteration. The plain mean can be gamed by many small good prisms:
+/// look at the volume-weighted one too. @throws Error layering_invalid (501) without heights. @cost O(layers x cuts x bins).
+[[nodiscard]] std::vector<int> best_mean_counts(std::span<const double> layer_heights_m, const HeightStatistics& final_heights);
+
+/// z levels for all slabs. `common_height_m` empty: one sub-layer per slab unless the rule is optimal or best_mean.
 /// Levels are equally spaced in a slab, and slab faces are exactly its z in metres.
 /// @throws Error layering_invalid (501) if a count exceeds 1,000,000, or all together exceed 10,000,000.
 [[nodiscard]] mesh::LayerPlan choose_layers(std::span<const model::Slab> slabs, study::SublayerRule rule,

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "pcbmesh/mesh/layer_plan.hpp"
 #include "pcbmesh/mesh/planar_mesh.hpp"
@@ -34,14 +35,25 @@ inline constexpr double max_prism_quality = 1.0264004785593347;
 /// quality (F11).
 [[nodiscard]] double nine_edge_quality(double area, double beta, double height);
 
+/// Triangles of about the same optimal height: best quality in sum and the mean height.
+struct HeightBin {
+  double height = 0;       ///< mean, metres
+  double sum_quality = 0;  ///< of the prism quality at the optimal height
+};
+
 /// Optimal heights over a planar mesh, metres.
 struct HeightStatistics {
   double minimum = 0, average = 0, maximum = 0;
   double mean_triangle_quality = 0;
   std::int64_t num_below_average = 0;
+  std::int64_t num_triangles = 0;
+  std::vector<HeightBin> bins;  ///< ascending, each 0.8 % wide: enough for mean qualities to 1e-4
 };
 /// All zero for a mesh without triangles. @cost O(triangles).
 [[nodiscard]] HeightStatistics height_statistics(const mesh::PlanarMesh& mesh);
+
+/// Mean over the triangles of the prism quality at one height. @cost O(bins).
+[[nodiscard]] double mean_quality_at(const HeightStatistics& heights, double height);
 
 /// Quality of a whole prism mesh. Void cells do not count; a planar triangle counts once if any prism stands on it.
 struct QualityStatistics {

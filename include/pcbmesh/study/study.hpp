@@ -45,13 +45,20 @@ enum class HeightPolicy {
   thinnest_layer  ///< case 5: thinnest layer, with feedback
 };
 
+/// What the triangulation starts from.
+enum class TriangleSeed {
+  delaunay,  ///< the outlines alone, as in the paper
+  hex        ///< a hexagonal lattice between outlines cut to its edge: nearly equilateral triangles, about half as many
+};
+
 /// How a layer of height H is cut by the common height h.
 enum class SublayerRule {
-  floor,   ///< max(1, floor(H/h)): what the paper's tables imply
-  round,   ///< max(1, round(H/h))
-  ceil,    ///< ceil(H/h)
-  none,    ///< one sub-layer per layer
-  optimal  ///< exact thresholds F10 on the final mesh's mean optimal height
+  floor,     ///< max(1, floor(H/h)): what the paper's tables imply
+  round,     ///< max(1, round(H/h))
+  ceil,      ///< ceil(H/h)
+  none,      ///< one sub-layer per layer
+  optimal,   ///< exact thresholds F10 on the final mesh's mean optimal height
+  best_mean  ///< the counts of greatest plain mean quality on the final mesh (Dinkelbach); the plain mean can be gamed
 };
 
 /// What the engineer wants to know about a board: everything that steers the mesh. Plain values; parse and
@@ -71,11 +78,13 @@ struct Study {
   Nm air_below = 1 * nm_per_mm;
   Nm air_around = 0;  ///< beside the board's bounding box (whole board only)
 
-  std::optional<double> frequency_hz;  ///< bounds the longest edge by a third of the local wavelength
-  std::optional<Nm> longest_edge;      ///< empty = from the frequency, else 2 mm as in the paper
-  double min_angle_deg = 20.7;         ///< in (0, 28.6]
-  std::optional<Nm> edge_at_copper;    ///< graded size: edge length at copper outlines
-  double growth = 0.3;                 ///< graded size: growth of the edge length per distance
+  std::optional<double> frequency_hz;          ///< bounds the longest edge by a third of the local wavelength
+  std::optional<Nm> longest_edge;              ///< empty = from the frequency, else 2 mm as in the paper
+  double min_angle_deg = 20.7;                 ///< in (0, 28.6]
+  std::optional<Nm> edge_at_copper;            ///< graded size: edge length at copper outlines
+  double growth = 0.3;                         ///< graded size: growth of the edge length per distance
+  TriangleSeed seed = TriangleSeed::delaunay;  ///< hex excludes edge_at_copper
+  bool smooth = false;                         ///< guarded smoothing of the triangles
   HeightPolicy policy = HeightPolicy::average;
   SublayerRule sublayers = SublayerRule::optimal;
   std::optional<Nm> tolerance;  ///< empty = auto
@@ -90,9 +99,11 @@ struct Study {
 [[nodiscard]] std::string_view name_of(ConductorMode value);
 [[nodiscard]] std::string_view name_of(HeightPolicy value);
 [[nodiscard]] std::string_view name_of(SublayerRule value);
+[[nodiscard]] std::string_view name_of(TriangleSeed value);
 /// Inverse of name_of; the paper's case numbers "1" to "5" are policies too. @throws Error usage (101) listing the choices.
 [[nodiscard]] HeightPolicy parse_height_policy(std::string_view text);
 [[nodiscard]] SublayerRule parse_sublayer_rule(std::string_view text);
+[[nodiscard]] TriangleSeed parse_triangle_seed(std::string_view text);
 [[nodiscard]] ConductorMode parse_conductor_mode(std::string_view text);
 
 /// Reads a study JSON (docs/schema/study.schema.json). Unknown fields are errors.

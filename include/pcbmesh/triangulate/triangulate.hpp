@@ -19,22 +19,33 @@ struct Grading {
   double growth = 0.3;           ///< edge length gained per unit of distance
 };
 
+/// What refinement starts from.
+enum class Seed {
+  delaunay,  ///< the outlines alone, as in the paper
+  hexagonal  ///< a lattice of equilateral triangles between outlines cut to its edge
+};
+
 struct TriangulateOptions {
   double longest_edge_nm = 2e6;  ///< > 0; a double: the feedback of h must not be rounded
   double min_angle_deg = 20.7;   ///< in (0, 28.6]
   std::optional<Grading> grading{};
+  Seed seed = Seed::delaunay;  ///< hexagonal excludes grading; the lattice's edge is longest_edge_nm * lattice_over_longest
+  bool smooth = false;         ///< guarded smoothing of the vertices inside faces; angle and edge bounds still hold
   std::int64_t max_vertices = 50'000'000;
   /// CGAL's stock mesher on millimetre doubles, as the paper's program had it: reproduces its triangle counts, which
   /// hang on rounding (a right angle is not quite right in binary millimetres). Slower, and unsafe for near-coincident edges.
   bool as_in_paper = false;
 };
 
+/// Edge of the hexagonal lattice over the bound on edges: between lattice and outlines some edges are longer.
+inline constexpr double lattice_over_longest = 0.625;
+
 struct TriangulateStatistics {
   std::int64_t num_input_vertices = 0;
   std::int64_t num_steiner = 0;
   double min_angle_deg = 0;                     ///< reached
   std::int64_t num_below_bound = 0;             ///< triangles below the bound (forced by input angles)
-  double cdt_s = 0, refine_s = 0, label_s = 0;  ///< process CPU seconds
+  double cdt_s = 0, refine_s = 0, label_s = 0;  ///< process CPU seconds; seeding and smoothing count as refinement
 };
 
 struct TriangulateResult {
@@ -49,7 +60,7 @@ struct TriangulateResult {
 /// @guarantee T2  each triangle lies in exactly one face of the graph
 /// @guarantee T3  same input and options give the same bytes
 /// @guarantee T4  refinement ends: vertices are capped, and forced small angles are reported, not chased
-/// @throws Error planar_crossing_edges (403), triangulation_limit (404), cancelled (103).
+/// @throws Error usage (101), planar_crossing_edges (403), triangulation_limit (404), cancelled (103).
 /// @cost about 1 us and 120 bytes at the peak per triangle, linear (benchmarks/triangulate_bench.cpp).
 /// @source Ye and Daniels sec. 3; Shewchuk 2002, Ruppert 1995 through CGAL Mesh_2.
 [[nodiscard]] TriangulateResult triangulate(const mesh::PlanarGraph& graph, const model::Model& model,

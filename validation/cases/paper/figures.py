@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Line and scatter plots as plain SVG: axes with round ticks, nothing else."""
+import math
+
+WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 720, 440, 70, 20, 40, 55
+COLOURS = ("#1f5fa8", "#c1440e", "#2e7d32", "#6a3d9a")
+
+
+def _ticks(low, high, most=8):
+    step = 10 ** math.floor(math.log10((high - low) / most))
+    for factor in (1, 2, 5, 10):
+        if (high - low) / (factor * step) <= most:
+            step *= factor
+            break
+    first = math.ceil(low / step - 1e-9)
+    return [k * step for k in range(first, math.floor(high / step + 1e-9) + 1)]
+
+
+def plot(title, x_label, y_label, series, x_range, y_range):
+    """SVG text. series: (name, points, "line" | "dashed" | "dots")."""
+    def x(value):
+        return LEFT + (value - x_range[0]) / (x_range[1] - x_range[0]) * (WIDTH - LEFT - RIGHT)
+
+    def y(value):
+        return HEIGHT - BOTTOM - (value - y_range[0]) / (y_range[1] - y_range[0]) * (HEIGHT - TOP - BOTTOM)
+
+    out = [f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" font-family="sans-serif" font-size="13">',
+           f'<rect width="{WIDTH}" height="{HEIGHT}" fill="white"/>',
+           f'<text x="{WIDTH / 2}" y="22" text-anchor="middle" font-size="15">{title}</text>',
+           f'<path d="M{LEFT} {TOP}V{HEIGHT - BOTTOM}H{WIDTH - RIGHT}" fill="none" stroke="black"/>']
+    for t in _ticks(*x_range):
+        out.append(f'<path d="M{x(t):.1f} {HEIGHT - BOTTOM}v5" stroke="black"/><text x="{x(t):.1f}" y="{HEIGHT - BOTTOM + 19}" text-anchor="middle">{t:.4g}</text>')
+    for t in _ticks(*y_range):
+        out.append(f'<path d="M{LEFT} {y(t):.1f}h-5" stroke="black"/><text x="{LEFT - 8}" y="{y(t) + 4:.1f}" text-anchor="end">{t:.4g}</text>')
+    out.append(f'<text x="{(LEFT + WIDTH - RIGHT) / 2}" y="{HEIGHT - 12}" text-anchor="middle">{x_label}</text>')
+    out.append(f'<text x="18" y="{(TOP + HEIGHT - BOTTOM) / 2}" text-anchor="middle" transform="rotate(-90 18 {(TOP + HEIGHT - BOTTOM) / 2})">{y_label}</text>')
+    for i, (name, points, kind) in enumerate(series):
+        colour = COLOURS[i % len(COLOURS)]
+        inside = [(x(a), y(b)) for a, b in points if x_range[0] <= a <= x_range[1] and y_range[0] <= b <= y_range[1]]
+        if kind == "dots":
+            out += [f'<circle cx="{a:.1f}" cy="{b:.1f}" r="2" fill="{colour}"/>' for a, b in inside]
+        else:
+            dash = ' stroke-dasharray="6 4"' if kind == "dashed" else ""
+            line = " ".join(f"{a:.1f},{b:.1f}" for a, b in inside)
+            out.append(f'<polyline points="{line}" fill="none" stroke="{colour}" stroke-width="1.6"{dash}/>')
+        out.append(f'<text x="{WIDTH - RIGHT - 8}" y="{TOP + 14 + 17 * i}" text-anchor="end" fill="{colour}">{name}</text>')
+    return "\n".join(out) + "\n</svg>\n"
+
+
+def figure4(data):
+    points = data["points"]
+    top = 1.05 * data["optimal_quality"]
+    return plot("Prism quality over height, one random triangle (Figure 4)", "height h4", "q_p",
+                [("q_p, Eq. 2", [(p[0], p[1]) for p in points], "line"),
+                 ("parabola of the second derivative, F8", [(p[0], p[2]) for p in points], "dashed")],
+                (points[0][0], points[-1][0]), (0.5 * data["optimal_quality"], top))
+
+
+def figure6(heights_m):
+    heights = [1e3 * h for h in heights_m]
+    return plot(f"Optimal prism heights of the serpentine's {len(heights)} triangles (Figure 6)", "triangle", "h*, mm",
+                [("h*, Eq. 3", list(enumerate(heights)), "dots"),
+                 ("mean", [(0, sum(heights) / len(heights)), (len(heights), sum(heights) / len(heights))], "line")],
+                (0, len(heights)), (0, 1.05 * max(heights)))
