@@ -9,11 +9,11 @@ namespace {
 
 class RandomBoards : public testing::TestWithParam<unsigned> {};
 
-TEST_P(RandomBoards, AreSound) {
+TEST_P(RandomBoards, O1_O3_AreSound) {
   test::expect_sound_random_board(GetParam());
 }
 
-TEST_P(RandomBoards, TurnedOnesHaveTheSameNets) {
+TEST_P(RandomBoards, O2_TurnedOnesHaveTheSameNets) {
   test::Layout layout = test::random_layout(GetParam());
   Diagnostics diagnostics;
   const OverlayOptions options{.tolerance_nm = 15 * nm_per_um};

@@ -170,7 +170,7 @@ TEST(Overlay, TipsSharingAVertex) {
   EXPECT_TRUE(result.touching_nets.empty()) << "a common point is no contact";
 }
 
-TEST(Overlay, NetsSixtyMicrometresApartStayApart) {
+TEST(Overlay, O2_NetsSixtyMicrometresApartStayApart) {
   Layout layout(10 * mm, 10 * mm);
   const auto a = layout.copper("A", 1), b = layout.copper("B", 1);
   layout.track(a, {1 * mm, 2 * mm}, {9 * mm, 7 * mm}, 200 * um);
@@ -249,7 +249,7 @@ TEST(Overlay, ShapesDrawnTwiceAreDrawnOnce) {
   EXPECT_TRUE(std::ranges::equal(first.graph.edges(), second.graph.edges()));
 }
 
-TEST(Overlay, BarrelsJoinThePiecesOfANet) {
+TEST(Overlay, O2_BarrelsJoinThePiecesOfANet) {
   Layout layout(10 * mm, 10 * mm);
   const auto top = layout.copper("A", 7), bottom = layout.copper("A", 1), inner = layout.copper("B", 3);
   layout.track(top, {1 * mm, 5 * mm}, {5 * mm, 5 * mm}, 300 * um);
@@ -367,7 +367,7 @@ TEST(Overlay, ASliverOfCopperIsLeftOutWithANote) {
 
 class RandomBoards : public testing::TestWithParam<unsigned> {};
 
-TEST_P(RandomBoards, AreSound) {
+TEST_P(RandomBoards, O1_O3_AreSound) {
   test::expect_sound_random_board(GetParam());
 }
 
