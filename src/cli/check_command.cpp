@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
+#include "formats/sink/file_sink.hpp"
 #include "pcbmesh/base/error.hpp"
 #include "pcbmesh/formats/registry.hpp"
+#include "pcbmesh/validation/codes.hpp"
+#include "pcbmesh/validation/outputs.hpp"
 #include "pcbmesh/validation/report.hpp"
 #include "src/cli/commands.hpp"
 #include "src/cli/terminal.hpp"
@@ -15,8 +20,9 @@ namespace pcbmesh::cli {
 namespace {
 
 struct Options {
-  std::string mesh, tags, format;
-  bool no_tags = false, json = false, quiet = false;
+  std::string mesh, tags, format, explain, junit, sarif, html, offenders;
+  std::string fail_on = "error";
+  bool no_tags = false, json = false, quiet = false, list = false;
   int threads = 2;
 };
 
@@ -28,9 +34,52 @@ std::string tags_beside(const std::string& mesh) {
   return std::filesystem::exists(file) ? file.string() : std::string();
 }
 
+void write_text(const std::string& file, const std::string& text) {
+  formats::FileSink sink(file);
+  sink.put(text);
+  sink.commit();
+}
+
+void write_reports(const Options& options, const validation::Report& report, const mesh::MeshData& mesh,
+                   validation::FindingSeverity threshold) {
+  if (!options.junit.empty()) write_text(options.junit, validation::to_junit(report, options.mesh, threshold));
+  if (!options.sarif.empty()) write_text(options.sarif, validation::to_sarif(report, options.mesh));
+  if (!options.html.empty()) write_text(options.html, validation::to_html(report, options.mesh));
+  if (!options.offenders.empty()) write_text(options.offenders, validation::to_offenders_vtu(report, mesh));
+}
+
+int explain(const std::string& code) {
+  const validation::CheckCode* entry = validation::find_check_code(code);
+  if (!entry) throw Error(ErrorCode::usage, fmt::format("--explain: no check has the code \"{}\"; --list shows all", code));
+  fmt::print("{}", validation::explain_check_code(*entry));
+  return 0;
+}
+
+/// A report must not land on what it reports on, nor two reports in one file.
+void require_distinct_files(const Options& options, const std::string& tags) {
+  std::vector<std::filesystem::path> taken;
+  for (const std::string& file : {options.mesh, tags, options.junit, options.sarif, options.html, options.offenders}) {
+    if (file.empty()) continue;
+    const std::filesystem::path full = std::filesystem::weakly_canonical(file);
+    if (std::ranges::find(taken, full) != taken.end()) {
+      throw Error(ErrorCode::usage, fmt::format("{} is named twice; every report needs a file of its own", file));
+    }
+    taken.push_back(full);
+  }
+}
+
 int run(const Options& options) {
+  if (options.list) {
+    fmt::print("{}", validation::list_check_codes());
+    return 0;
+  }
+  if (!options.explain.empty()) return explain(options.explain);
+  if (options.mesh.empty()) throw Error(ErrorCode::usage, "check needs a mesh file, --list or --explain CODE");
   if (options.no_tags && !options.tags.empty()) throw Error(ErrorCode::usage, "--tags and --no-tags exclude each other");
   const std::string tags = options.no_tags ? "" : !options.tags.empty() ? options.tags : tags_beside(options.mesh);
+  require_distinct_files(options, tags);
+  const auto threshold =
+      options.fail_on == "warning" ? validation::FindingSeverity::warning : validation::FindingSeverity::error;
   validation::Expectation expectation;
   if (!tags.empty()) expectation = validation::read_expectation(tags);
   const Progress progress = terminal_progress(options.quiet);
@@ -39,6 +88,7 @@ int run(const Options& options) {
   progress.at("check", 0.5);
   const validation::Report report = validation::check(mesh, tags.empty() ? nullptr : &expectation, {options.threads});
   clear_progress();
+  write_reports(options, report, mesh, threshold);
   if (options.json) {
     fmt::print("{}\n", validation::to_json(report));
   } else {
@@ -46,7 +96,7 @@ int run(const Options& options) {
                tags.empty() ? " (no tags.json: checked for what the mesh itself promises)" : " against " + tags,
                validation::to_text(report));
   }
-  return report.passed() ? 0 : 1;
+  return validation::fails_at(report, threshold) ? 1 : 0;
 }
 
 }  // namespace
@@ -55,14 +105,25 @@ Command add_check_command(CLI::App& program) {
   CLI::App* command =
       program.add_subcommand("check", "Judge a mesh: conformity, volumes, tags, nets; exit code 1 with findings");
   auto options = std::make_shared<Options>();
-  command->add_option("mesh", options->mesh, "Mesh file (.msh)")->required();
+  command->add_option("mesh", options->mesh, "Mesh file (.msh)");
   command->add_option("--tags", options->tags, "tags.json to check against (default: the one beside the mesh)");
   command->add_flag("--no-tags", options->no_tags, "Check only what the mesh itself promises");
   command->add_option("--format", options->format, "Format of the mesh (default: by content and name)");
   command->add_flag("--json", options->json, "Print the report as JSON");
+  command->add_option("--fail-on", options->fail_on, "Exit code 1 from this severity on: error (default) or warning")
+      ->check(CLI::IsMember({"warning", "error"}));
+  command->add_option("--junit", options->junit, "Write a JUnit XML report for CI systems");
+  command->add_option("--sarif", options->sarif, "Write a SARIF 2.1.0 report");
+  command->add_option("--html", options->html, "Write a one-page HTML summary");
+  command->add_option("--offenders", options->offenders, "Write the first offending cells and faces of each finding as VTU");
+  command->add_flag("--list", options->list, "List every check code and end");
+  command->add_option("--explain", options->explain, "Explain one check code and end");
   command->add_flag("--quiet", options->quiet, "No progress line");
   command->add_option("--threads", options->threads, "Threads (default 2)")->check(CLI::Range(1, 256));
-  command->footer("Examples:\n  pcbmesh check board.msh\n  pcbmesh check board.msh --json | jq .findings");
+  command->footer(
+      "Examples:\n  pcbmesh check board.msh\n  pcbmesh check board.msh --json | jq .findings\n"
+      "  pcbmesh check board.msh --fail-on warning --junit report.xml\n"
+      "  pcbmesh check --explain node.hanging");
   return {command, [options] { return run(*options); }};
 }
 
