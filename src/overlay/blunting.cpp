@@ -9,8 +9,8 @@
 namespace pcbmesh::overlay {
 namespace {
 
-/// Cosines of 15 and 6 degrees.
-constexpr double needle_cosine = 0.96593, hair_cosine = 0.99452;
+/// Cosine of 20.7 degrees, the angle the triangulation is asked for.
+constexpr double bound_cosine = 0.93544;
 
 struct Wedge {
   double cosine;                       ///< of the angle; larger is sharper
@@ -109,8 +109,8 @@ class Blunter {
     const double first_length = distance(at, noder_.points()[ix(first_end)]),
                  second_length = distance(at, noder_.points()[ix(second_end)]);
     const double half_sine = std::sqrt(std::max(0.0, (1 - wedge.cosine) / 2));
-    // A needle is worth going nearer to a neck, but never within the tolerance of closing it.
-    guard_ = wedge.cosine > hair_cosine ? 0.5 : wedge.cosine > needle_cosine ? 1.0 : 2.0;
+    // An angle below the triangulation's bound is worth going nearer to a neck; the topology check has the last word.
+    guard_ = wedge.cosine > bound_cosine ? 0.5 : 1.0;
     const double run = limits_.width_nm / (2 * half_sine);
     const double least = run + static_cast<double>(noder_.tolerance());
     if (std::min(first_length, second_length) >= least) {

@@ -62,6 +62,12 @@ class MeshBounds {
     return is_forced(face, shape.shortest) ? Verdict::good : Verdict::bad_shape;
   }
 
+  /// Bad enough that shells round a corner of the graph may be split once more for it. Not below a hundred times the floor:
+  /// there the triangle belongs to a corner sharper than the bound, and splitting would go on for ever.
+  [[nodiscard]] bool is_worth_a_shell(const Shape& shape) const {
+    return shape.sine2 < sine2_bound_ && shape.shortest2 > 1e4 * floor2_;
+  }
+
   /// Is the angle at this corner an angle of the graph itself? No vertex can improve it.
   [[nodiscard]] static bool is_forced(Cdt::Face_handle face, int corner) {
     return face->is_constrained(Cdt::cw(corner)) && face->is_constrained(Cdt::ccw(corner));

@@ -165,7 +165,12 @@ class FaceSplitting : public CGAL::Triangulation_mesher_level_traits_2<Triangula
   Point refinement_point_impl(const FaceHandle& face) const { return this->triangulation_ref_impl().circumcenter(face); }
 
   void before_conflicts_impl(const FaceHandle& face, const Point&) {
-    edges_.set_imperative_refinement(bounds_.judge(face, Bounds::measure(face)) == Bounds::Verdict::too_long);
+    // Outlines that meet at less than 60 degrees are split in equal shells, and CGAL gives up a bad triangle whose centre would
+    // split such a shell once more: hundreds of triangles below the bound on a real board. The overlay leaves no corner sharper
+    // than 30 degrees, where splitting ends well; sharper ones meet the floor.
+    const auto shape = Bounds::measure(face);
+    edges_.set_imperative_refinement(bounds_.is_worth_a_shell(shape) ||
+                                     bounds_.judge(face, shape) == Bounds::Verdict::too_long);
   }
 
   /// Faces whose circle holds p, reached from `face` without passing a constrained edge: no point location is needed.

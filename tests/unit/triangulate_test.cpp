@@ -342,6 +342,23 @@ TEST(Triangulate, AngleBoundIsHeldOnGoodInput) {
   }
 }
 
+TEST(Triangulate, AngleBoundIsHeldWhereOutlinesCrossNearEachOther) {
+  // Three outlines of three layers cross within 36 um, at 45 degrees: the small triangle between them is cut in shells on all
+  // sides. CGAL's own rule leaves triangles of four degrees there.
+  constexpr Nm um = 1'000;
+  for (const Nm side : {36 * um, 23 * um, 11 * um}) {
+    const Point a{4'000 * um, 4'000 * um}, b{a.x + side, a.y}, c{b.x, b.y + side};
+    Drawing drawing;
+    drawing.ring({domain, board}, rectangle(0, 0, 10'000'000, 8'000'000));
+    drawing.ring(copper, {{500 * um, a.y}, {500 * um, 500 * um}, {9'500 * um, 500 * um}, {9'500 * um, a.y}, b, a});
+    drawing.ring(second, {a, b, c});
+    drawing.ring(copper, {c, {c.x + 3'000 * um, c.y + 3'000 * um}, {c.x, c.y + 3'000 * um}});
+    const auto result = run(drawing, {});
+    EXPECT_GE(smallest_angle_deg(result.mesh), 20.7 - 0.01) << side;
+    EXPECT_EQ(result.statistics.num_below_bound, 0) << side;
+  }
+}
+
 TEST(Triangulate, EdgeBoundIsHeld) {
   for (const double longest : {1e6, 2.5e5, 1.234567e5}) {
     const auto result = run(board_with_pads(), {.longest_edge_nm = longest});
