@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <unordered_set>
 #include <utility>
 
 #include "pcbmesh/base/error.hpp"
+#include "pcbmesh/base/near_miss.hpp"
 
 namespace pcbmesh::board {
 namespace {
@@ -35,23 +35,6 @@ void require_figure(const BoardParts& parts, const geometry::Figure& figure, std
   }
   if (!figure.filled && figure.pen == 0)
     throw Error(ErrorCode::board_invalid, fmt::format("{} without area: neither filled nor drawn with a pen", what), spot);
-}
-
-/// Levenshtein distance, stopped at `limit`.
-std::size_t edit_distance(std::string_view a, std::string_view b, std::size_t limit) {
-  if (a.size() > b.size() + limit || b.size() > a.size() + limit) return limit + 1;
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t up = row[j];
-      row[j] = std::min({up + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0U : 1U)});
-      diagonal = up;
-    }
-  }
-  return row[b.size()];
 }
 
 }  // namespace
@@ -148,27 +131,7 @@ std::optional<std::int32_t> Board::find_net(std::string_view name) const {
 }
 
 std::vector<std::string> Board::similar_nets(std::string_view name, std::size_t most) const {
-  const auto lower = [](std::string_view text) {
-    std::string out(text);
-    std::transform(out.begin(), out.end(), out.begin(),
-                   [](unsigned char c) { return static_cast<char>(c >= 'A' && c <= 'Z' ? c + 32 : c); });
-    return out;
-  };
-  const std::string wanted = lower(name);
-  std::vector<std::pair<std::size_t, std::string>> scored;
-  for (const std::string& net : parts_->nets) {
-    const std::string candidate = lower(net);
-    std::size_t score = edit_distance(wanted, candidate, 4);
-    if (!wanted.empty() &&
-        (candidate.find(wanted) != std::string::npos || (!candidate.empty() && wanted.find(candidate) != std::string::npos)))
-      score = std::min<std::size_t>(score, 2);
-    if (score <= std::max<std::size_t>(2, name.size() / 3)) scored.emplace_back(score, net);
-  }
-  std::sort(scored.begin(), scored.end());
-  std::vector<std::string> out;
-  for (auto& [score, net] : scored)
-    if (out.size() < most) out.push_back(std::move(net));
-  return out;
+  return near_misses(name, parts_->nets, most);
 }
 
 std::string_view Board::net_name(std::int32_t net) const {
