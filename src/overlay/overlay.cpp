@@ -19,6 +19,7 @@ namespace {
 
 constexpr Nm least_tolerance = nm_per_um;
 constexpr int most_blunt_rounds = 6;
+constexpr double most_area_error = 0.02;
 
 Nm first_tolerance(const model::Model& model, const OverlayOptions& options) {
   if (options.tolerance_nm) {
@@ -170,9 +171,9 @@ std::vector<std::int32_t> bodies_of(const std::vector<Mismatch>& mismatches, con
 /// 3/4, 1/2, 1/4 ... of the first tolerance, at last a micrometre without blunting; nullopt when none is left.
 std::optional<Attempt> smaller_attempt(const Attempt& last, Nm first_tolerance_nm) {
   const Nm three_quarters = first_tolerance_nm * 3 / 4;
-  const Nm smaller = last.tolerance_nm == first_tolerance_nm ? three_quarters
-                     : last.tolerance_nm == three_quarters   ? first_tolerance_nm / 2
-                                                             : last.tolerance_nm / 2;
+  const Nm smaller = last.tolerance_nm > three_quarters    ? three_quarters
+                     : last.tolerance_nm == three_quarters ? first_tolerance_nm / 2
+                                                           : last.tolerance_nm / 2;
   if (smaller >= least_tolerance) return Attempt{smaller, {}};
   if (last.tolerance_nm > least_tolerance) return Attempt{least_tolerance, {}};
   // What the probe of accept_what_no_tolerance_keeps() does, so this holds where anything does.
@@ -208,6 +209,16 @@ class Attempts {
         if (!mismatches.empty() && !can_spare && accept_what_no_tolerance_keeps())
           mismatches = compare(expected_, cleaned.census, model_);
         if (mismatches.empty()) {
+          // Topology holds. If areas do not, one somewhat smaller tolerance is worth a try: which of two outlines gives way is
+          // luck.
+          const Nm somewhat_smaller = first_tolerance_nm * 17 / 20;
+          if (attempt->tolerance_nm == first_tolerance_nm && somewhat_smaller >= least_tolerance && !is_faithful(cleaned)) {
+            diagnostics_.note("overlay.retry",
+                              fmt::format("tolerance {}: one body in a hundred changes its area by more than {} %",
+                                          format_length(attempt->tolerance_nm), 100 * most_area_error));
+            attempt = Attempt{somewhat_smaller, {}};
+            continue;
+          }
           warn_of_contacts(cleaned);
           return finished(cleaned, *attempt, num_attempts);
         }
@@ -250,6 +261,20 @@ class Attempts {
     result.statistics.num_passes = cleaned.counts.num_passes;
     measure_areas(model_, sheets_, area_mm2, result.statistics);
     return result;
+  }
+
+  /// Do 99 of 100 copper bodies keep their area?
+  [[nodiscard]] bool is_faithful(const Cleaned& cleaned) const {
+    const std::vector<double> area_mm2 = areas_mm2(cleaned.graph, labels_, model_.bodies().size());
+    std::vector<double> errors;
+    for (std::size_t b = 0; b < area_mm2.size(); ++b) {
+      if (model_.bodies()[b].kind == model::BodyKind::copper && sheets_.area_mm2[b] > 0)
+        errors.push_back(std::abs(area_mm2[b] / sheets_.area_mm2[b] - 1));
+    }
+    if (errors.empty()) return true;
+    const auto place = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() * 99 / 100);
+    std::ranges::nth_element(errors, place);
+    return *place <= most_area_error;
   }
 
   /// Nets that meet in the layout itself (net ties, drawing errors) are meshed as drawn, and named.
