@@ -13,6 +13,7 @@
 
 #include "pcbmesh/formats/registry.hpp"
 #include "src/cli/commands.hpp"
+#include "src/cli/diagnostics_json.hpp"
 #include "src/cli/terminal.hpp"
 
 namespace pcbmesh::cli {
@@ -111,16 +112,6 @@ std::string to_json(const board::Board& board, const Diagnostics& diagnostics) {
     entry["layers"] = names;
     nets.push_back(entry);
   }
-  Json diagnostics_out = Json::array();
-  for (const Diagnostic& d : diagnostics.entries()) {
-    Json spots = Json::array();
-    for (const Spot& spot : d.spots) spots.push_back(spot.text());
-    diagnostics_out.push_back({{"severity", d.severity == Severity::warning ? "warning" : "note"},
-                               {"code", d.code},
-                               {"text", d.text},
-                               {"count", d.count},
-                               {"places", spots}});
-  }
   return Json{{"source", board.source()},
               {"outlines", board.outlines().size()},
               {"box_mm", box.is_empty() ? Json(nullptr) : Json{mm(box.min.x), mm(box.min.y), mm(box.max.x), mm(box.max.y)}},
@@ -128,7 +119,7 @@ std::string to_json(const board::Board& board, const Diagnostics& diagnostics) {
               {"nets", nets},
               {"counts", {{"shapes", board.shapes().size()}, {"drills", board.drills().size()}, {"pins", board.pins().size()}}},
               {"forecast", {{"triangles", std::llround(forecast_triangles(board, box))}}},
-              {"diagnostics", diagnostics_out}}
+              {"diagnostics", diagnostics_json(diagnostics)}}
       .dump(2);
 }
 

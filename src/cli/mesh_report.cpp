@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pcbmesh/base/version.hpp"
+#include "src/cli/diagnostics_json.hpp"
 #include "src/cli/quality_text.hpp"
 #include "src/cli/terminal.hpp"
 
@@ -22,20 +23,6 @@ double peak_memory_mib() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
-}
-
-Json diagnostics_json(const Diagnostics& diagnostics) {
-  Json out = Json::array();
-  for (const Diagnostic& d : diagnostics.entries()) {
-    Json spots = Json::array();
-    for (const Spot& spot : d.spots) spots.push_back(spot.text());
-    out.push_back({{"severity", d.severity == Severity::warning ? "warning" : "note"},
-                   {"code", d.code},
-                   {"text", d.text},
-                   {"count", d.count},
-                   {"places", spots}});
-  }
-  return out;
 }
 
 /// Ledger entries by largest move; the whole ledger of a big board has thousands of lines, so the worst hundred are kept.

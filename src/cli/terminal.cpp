@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -20,10 +21,6 @@ void on_signal(int signal) {
 }
 
 }  // namespace
-
-const std::atomic<bool>& cancel_flag() {
-  return cancelled;
-}
 
 void catch_signals() {
   std::signal(SIGINT, on_signal);

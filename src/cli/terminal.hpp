@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <atomic>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -10,9 +10,7 @@
 
 namespace pcbmesh::cli {
 
-/// Set by ^C and by a termination request; polled by every long step.
-[[nodiscard]] const std::atomic<bool>& cancel_flag();
-/// Turns SIGINT and SIGTERM into cancel_flag(); a second ^C kills as usual.
+/// Turns SIGINT and SIGTERM into the cancellation that terminal_progress() polls; a second ^C kills as usual.
 void catch_signals();
 
 /// A progress line on standard error, if that is a terminal and `quiet` is off; else silent. Always cancellable.

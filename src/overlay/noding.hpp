@@ -66,7 +66,6 @@ class Noder {
   bool cluster();
   bool split();
   void rank_vertices();
-  void mark_used();
   [[nodiscard]] bool splits(std::int32_t vertex, const Edge& e, Foot& foot) const;
   void collect_near(std::vector<Split>& found, std::vector<Pair>& crossing);
   void resolve_crossings(std::vector<Pair>& crossing, std::vector<Split>& found);

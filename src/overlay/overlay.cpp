@@ -209,10 +209,11 @@ class Attempts {
         if (!mismatches.empty() && !can_spare && accept_what_no_tolerance_keeps())
           mismatches = compare(expected_, cleaned.census, model_);
         if (mismatches.empty()) {
+          const std::vector<double> area_mm2 = areas_mm2(cleaned.graph, labels_, model_.bodies().size());
           // Topology holds. If areas do not, one somewhat smaller tolerance is worth a try: which of two outlines gives way is
           // luck.
           const Nm somewhat_smaller = first_tolerance_nm * 17 / 20;
-          if (attempt->tolerance_nm == first_tolerance_nm && somewhat_smaller >= least_tolerance && !is_faithful(cleaned)) {
+          if (attempt->tolerance_nm == first_tolerance_nm && somewhat_smaller >= least_tolerance && !is_faithful(area_mm2)) {
             diagnostics_.note("overlay.retry",
                               fmt::format("tolerance {}: one body in a hundred changes its area by more than {} %",
                                           format_length(attempt->tolerance_nm), 100 * most_area_error));
@@ -220,7 +221,9 @@ class Attempts {
             continue;
           }
           warn_of_contacts(cleaned);
-          return finished(cleaned, *attempt, num_attempts);
+          OverlayResult result = finished(cleaned, area_mm2, *attempt, num_attempts);
+          result.statistics.first_tolerance_nm = first_tolerance_nm;
+          return result;
         }
         const Spot spot = locate(mismatches.front(), sheets_, cleaned, labels_, conductors_, progress_);
         failure = refusal(mismatches.front(), spot);
@@ -243,8 +246,8 @@ class Attempts {
   }
 
  private:
-  OverlayResult finished(const Cleaned& cleaned, const Attempt& attempt, int num_attempts) const {
-    const std::vector<double> area_mm2 = areas_mm2(cleaned.graph, labels_, model_.bodies().size());
+  OverlayResult finished(const Cleaned& cleaned, const std::vector<double>& area_mm2, const Attempt& attempt,
+                         int num_attempts) const {
     OverlayResult result{to_planar_graph(cleaned.graph, labels_),
                          make_ledger(model_, sheets_, cleaned.graph, area_mm2, labels_, attempt.tolerance_nm, progress_),
                          {},
@@ -264,8 +267,7 @@ class Attempts {
   }
 
   /// Do 99 of 100 copper bodies keep their area?
-  [[nodiscard]] bool is_faithful(const Cleaned& cleaned) const {
-    const std::vector<double> area_mm2 = areas_mm2(cleaned.graph, labels_, model_.bodies().size());
+  [[nodiscard]] bool is_faithful(const std::vector<double>& area_mm2) const {
     std::vector<double> errors;
     for (std::size_t b = 0; b < area_mm2.size(); ++b) {
       if (model_.bodies()[b].kind == model::BodyKind::copper && sheets_.area_mm2[b] > 0)

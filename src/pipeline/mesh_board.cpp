@@ -98,7 +98,9 @@ MeshBoardResult mesh_board(const board::Board& board, const study::Study& study,
   overlay_options.tolerance_nm = study.tolerance;
   overlay::OverlayResult graph =
       timed("overlay", [&] { return overlay::overlay(model, overlay_options, diagnostics, progress); });
-  resolved.tolerance = graph.statistics.tolerance_nm;
+  // Not the tolerance that held in the end: a run that starts there would take other ways, and the resolved study repeats this
+  // one.
+  resolved.tolerance = graph.statistics.first_tolerance_nm;
 
   triangulate::TriangulateOptions options;
   options.longest_edge_nm = static_cast<double>(*resolved.longest_edge);

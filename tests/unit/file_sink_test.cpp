@@ -20,6 +20,7 @@
 
 #include "folder.hpp"
 #include "pcbmesh/base/error.hpp"
+#include "thrown_error.hpp"
 
 namespace pcbmesh::formats {
 namespace {
@@ -28,17 +29,8 @@ namespace fs = std::filesystem;
 
 using testing::contents;
 using testing::create;
+using testing::error_of;
 using testing::Folder;
-
-Error error_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error;
-  }
-  ADD_FAILURE() << "no error was thrown";
-  return {ErrorCode::internal, "none"};
-}
 
 /// Runs the action in a child process; its exit status (the action's result), or minus the signal that ended it.
 int in_child(const std::function<int()>& action) {

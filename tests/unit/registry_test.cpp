@@ -10,23 +10,15 @@
 #include "folder.hpp"
 #include "pcbmesh/base/error.hpp"
 #include "sample_prism_mesh.hpp"
+#include "thrown_error.hpp"
 
 namespace pcbmesh::formats {
 namespace {
 
 using testing::contents;
 using testing::create;
+using testing::error_of;
 using testing::Folder;
-
-Error error_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error;
-  }
-  ADD_FAILURE() << "no error was thrown";
-  return {ErrorCode::internal, "none"};
-}
 
 TEST(Registry, NamesAndEndingsAreUnambiguous) {
   std::set<std::string_view> names, endings;

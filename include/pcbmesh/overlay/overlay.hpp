@@ -32,8 +32,9 @@ struct SnapRecord {
 };
 
 struct OverlayStatistics {
-  Nm tolerance_nm = 0;  ///< tolerance that was used in the end
-  int attempts = 1;     ///< 1 = the first tolerance held
+  Nm first_tolerance_nm = 0;  ///< the first one tried; given as an option, it repeats the result
+  Nm tolerance_nm = 0;        ///< tolerance that was used in the end
+  int attempts = 1;           ///< 1 = the first tolerance held
   std::int64_t num_input_vertices = 0;
   std::int64_t num_snapped = 0;    ///< vertices moved or merged
   std::int64_t num_crossings = 0;  ///< crossings made vertices
