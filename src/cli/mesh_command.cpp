@@ -10,8 +10,10 @@
 #include "pcbmesh/formats/registry.hpp"
 #include "pcbmesh/pipeline/mesh_board.hpp"
 #include "pcbmesh/pipeline/write_outputs.hpp"
+#include "pcbmesh/view/report.hpp"
 #include "src/cli/commands.hpp"
 #include "src/cli/mesh_report.hpp"
+#include "src/cli/page_contents.hpp"
 #include "src/cli/quality_text.hpp"
 #include "src/cli/study_options.hpp"
 #include "src/cli/terminal.hpp"
@@ -20,7 +22,7 @@ namespace pcbmesh::cli {
 namespace {
 
 struct Options {
-  std::string board, from, to, msh_version;
+  std::string board, from, to, msh_version, html;
   std::vector<std::string> outputs;
   bool ascii = false, no_check = false, json = false, dry_run = false, quality = false, quiet = false,
        warnings_as_errors = false;
@@ -69,6 +71,12 @@ int run(const Options& options) {
     const std::filesystem::path summary = pipeline::file_beside(output.meshes.front(), ".report.json");
     mesh_run.files = written.files;
     mesh_run.files.push_back(summary.string());
+    if (!options.html.empty()) {
+      progress.at("view", 0);
+      mesh_run.files.push_back(options.html);
+      pipeline::write_binary_file(options.html,
+                                  view::report_html(result.mesh, page_contents(mesh_run, metres_per(study.unit))));
+    }
     pipeline::write_text_file(summary, report_json(mesh_run));
   }
   clear_progress();
@@ -95,6 +103,8 @@ Command add_mesh_command(CLI::App& program) {
       ->group(output);
   command->add_option("--from", options->from, "Format of the board (default: by content and name)")->group(output);
   command->add_option("--to", options->to, "Format of the mesh (default: by ending)")->group(output);
+  command->add_option("--html", options->html, "Also write a page to look at: 3D view, findings, quality; one file, no network")
+      ->group(output);
   command->add_flag("--no-check", options->no_check, "Do not read the written mesh back and judge it")->group(output);
   command->add_flag("--dry-run", options->dry_run, "Do everything but write: exact counts")->group(output);
   command->add_flag("--json", options->json, "Print the report as JSON")->group(output);

@@ -85,19 +85,23 @@ std::vector<char> hidden_groups(const PictureFlags& flags, const mesh::PrismMesh
   return hidden;
 }
 
-view::SectionPlane parse_section(const std::string& text) {
-  // "x=10mm" cuts away what lies beyond; "x=10mm+" keeps it instead.
+/// "x=10mm" cuts away what stands before the plane; "x=10mm+" keeps the side of greater coordinates, "x=10mm-" the other.
+view::SectionPlane parse_section(const std::string& text, const view::Camera& camera) {
   view::SectionPlane plane;
   const std::size_t at = text.find('=');
   const std::string axis = text.substr(0, at);
   if (at == std::string::npos || (axis != "x" && axis != "y" && axis != "z"))
-    throw Error(ErrorCode::usage, fmt::format("--section '{}': expected an axis and a place, e.g. x=10mm, or x=10mm+ to keep "
-                                              "the other side",
+    throw Error(ErrorCode::usage, fmt::format("--section '{}': expected an axis and a place, e.g. x=10mm; x=10mm+ keeps what "
+                                              "lies above it, x=10mm- what lies below",
                                               text));
   plane.axis = axis[0] - 'x';
   std::string place = text.substr(at + 1);
-  plane.keep_above = place.ends_with('+');
-  if (plane.keep_above) place.pop_back();
+  const std::array<double, 3> towards = view::direction_of(camera);
+  plane.keep_above = towards[static_cast<std::size_t>(plane.axis)] < 0;
+  if (place.ends_with('+') || place.ends_with('-')) {
+    plane.keep_above = place.back() == '+';
+    place.pop_back();
+  }
   plane.at_m = static_cast<double>(parse_length(place)) * metres_per_nm;
   return plane;
 }
@@ -155,7 +159,8 @@ std::shared_ptr<PictureFlags> add_picture_flags(CLI::App& command) {
   command.add_option("--thickness", f->thickness, "Stretch of z (default: so that a thin board still shows its layers)")
       ->check(CLI::Range(0.001, 1e6))
       ->group(look);
-  command.add_option("--section", f->section, "Cut at a plane, e.g. y=12mm; y=12mm+ keeps the other side")->group(look);
+  command.add_option("--section", f->section, "Cut at a plane, e.g. y=12mm; y=12mm+ or y=12mm- says which side stays")
+      ->group(look);
   constexpr const char* what = "What is shown";
   command.add_option("--colour,--color", f->colour, "material (default), net, layer, group, tag, q_p, q_t or size")
       ->group(what);
@@ -192,7 +197,7 @@ view::PictureOptions picture_options(const PictureFlags& flags, const mesh::Pris
   o.background = parse_background(flags.background);
   o.visibility.hidden_groups = hidden_groups(flags, mesh);
   if (flags.explode > 0) o.visibility.mode = view::SkinMode::layers;
-  if (!flags.section.empty()) o.visibility.section = parse_section(flags.section);
+  if (!flags.section.empty()) o.visibility.section = parse_section(flags.section, o.camera);
   if (!flags.box.empty()) o.visibility.box_m = parse_show_box(flags.box);
   return o;
 }

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "pcbmesh/base/error.hpp"
@@ -20,7 +21,7 @@ namespace {
 
 struct Options {
   std::string board, from, output, title;
-  bool quiet = false;
+  bool quiet = false, json = false;
   std::shared_ptr<StudyOptions> study;
   std::shared_ptr<PictureFlags> picture;
 };
@@ -54,7 +55,15 @@ int run(const Options& options) {
   const std::string picture = draw(options, result.mesh, ending);
   clear_progress();
   pipeline::write_binary_file(options.output, picture);
-  if (!options.quiet)
+  if (options.json) {
+    const view::SkinCount faces = view::count_skin(result.mesh, picture_options(*options.picture, result.mesh).visibility);
+    fmt::print("{}\n", nlohmann::ordered_json{{"picture", options.output},
+                                              {"bytes", picture.size()},
+                                              {"prisms", result.mesh.num_prisms()},
+                                              {"visible_triangles", faces.num_triangles},
+                                              {"visible_quads", faces.num_quads}}
+                          .dump(2));
+  } else if (!options.quiet)
     fmt::print("{}: {} prisms, {} bytes\n", options.output, grouped(result.mesh.num_prisms()),
                grouped(static_cast<std::int64_t>(picture.size())));
   return 0;
@@ -69,6 +78,7 @@ Command add_render_command(CLI::App& program) {
   command->add_option("-o,--output", options->output, "Picture: .png or .svg")->required();
   command->add_option("--title", options->title, "Title of an SVG");
   command->add_option("--from", options->from, "Format of the board (default: by content and name)");
+  command->add_flag("--json", options->json, "Print as JSON: counts of prisms and visible faces, bytes");
   command->add_flag("--quiet", options->quiet, "Print errors alone");
   options->picture = add_picture_flags(*command);
   options->study = add_study_options(*command);

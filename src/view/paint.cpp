@@ -42,6 +42,13 @@ bool contains(std::string_view text, std::string_view part) {
          text.end();
 }
 
+double longest_edge_mm(const mesh::PlanarMesh& planar, std::int32_t t) {
+  const auto squared = planar.squared_edges_m2(t);
+  return 1e3 * std::sqrt(std::max({squared[0], squared[1], squared[2]}));
+}
+
+}  // namespace
+
 bool is_conductor(const board::Material& material) {
   return material.sigma_s_per_m > copper_like_s_per_m;
 }
@@ -49,13 +56,6 @@ bool is_conductor(const board::Material& material) {
 bool is_mask(const board::Material& material) {
   return !is_conductor(material) && (contains(material.name, "mask") || contains(material.name, "resist"));
 }
-
-double longest_edge_mm(const mesh::PlanarMesh& planar, std::int32_t t) {
-  const auto squared = planar.squared_edges_m2(t);
-  return 1e3 * std::sqrt(std::max({squared[0], squared[1], squared[2]}));
-}
-
-}  // namespace
 
 std::string hex(Rgb c) {
   return fmt::format("#{:02x}{:02x}{:02x}", c.r, c.g, c.b);

@@ -92,7 +92,7 @@ class Shown {
         classes_[cell] = group;
         break;
       case SkinMode::layers:
-        classes_[cell] = slab;
+        classes_[cell] = mesh_.volume_tags()[index(group)].layer;
         break;
     }
   }

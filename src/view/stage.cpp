@@ -81,6 +81,11 @@ Camera parse_camera(std::string_view name) {
   throw Error(ErrorCode::usage, fmt::format("'{}' is no view; take one of {}", name, fmt::join(names, ", ")));
 }
 
+std::array<double, 3> direction_of(const Camera& camera) {
+  const double azimuth = camera.azimuth_deg * radians, elevation = camera.elevation_deg * radians;
+  return {std::sin(azimuth) * std::cos(elevation), -std::cos(azimuth) * std::cos(elevation), std::sin(elevation)};
+}
+
 double thickness_scale_of(const mesh::PrismMesh& mesh, const PictureOptions& options) {
   std::vector<char> used;
   return stretch_for(bounds_of(mesh, options.visibility, used), options);
@@ -118,7 +123,7 @@ void Stage::look(const PictureOptions& options, const std::array<Vec3, 8>& corne
   const double ca = std::cos(azimuth), sa = std::sin(azimuth), ce = std::cos(elevation), se = std::sin(elevation);
   right_ = {ca, sa, 0};
   up_ = {-sa * se, ca * se, ce};
-  towards_ = {sa * ce, -ca * ce, se};
+  towards_ = direction_of(camera);
   perspective_ = camera.perspective;
   const auto dot = [](const Vec3& p, const Vec3& q) { return p[0] * q[0] + p[1] * q[1] + p[2] * q[2]; };
   Vec3 middle{};

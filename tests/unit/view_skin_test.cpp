@@ -59,7 +59,7 @@ TEST_F(SkinOfSample, V1_OuterFacesAreThoseUsedByOnePrism) {
   expect_same(count_skin(mesh, {}), count_by_faces(mesh, [](std::int32_t, std::int32_t) { return 0; }));
 }
 
-TEST_F(SkinOfSample, V2_EveryMaterialGroupAndSlabIsClosed) {
+TEST_F(SkinOfSample, V2_EveryMaterialGroupAndLayerIsClosed) {
   Visibility visibility;
   visibility.mode = SkinMode::materials;
   expect_same(count_skin(mesh, visibility), count_by_faces(mesh, [&](std::int32_t tag, std::int32_t) {
@@ -68,7 +68,9 @@ TEST_F(SkinOfSample, V2_EveryMaterialGroupAndSlabIsClosed) {
   visibility.mode = SkinMode::groups;
   expect_same(count_skin(mesh, visibility), count_by_faces(mesh, [](std::int32_t tag, std::int32_t) { return tag; }));
   visibility.mode = SkinMode::layers;
-  expect_same(count_skin(mesh, visibility), count_by_faces(mesh, [](std::int32_t, std::int32_t slab) { return slab; }));
+  expect_same(count_skin(mesh, visibility), count_by_faces(mesh, [&](std::int32_t tag, std::int32_t) {
+                return mesh.volume_tags()[static_cast<std::size_t>(tag)].layer;
+              }));
 }
 
 TEST_F(SkinOfSample, HiddenGroupsLayOpenWhatTheyCovered) {

@@ -80,6 +80,10 @@ class Paint {
   std::array<double, 2> range_{0, 1};
 };
 
+/// Metals, and lacquers that one sees through.
+[[nodiscard]] bool is_conductor(const board::Material& material);
+[[nodiscard]] bool is_mask(const board::Material& material);
+
 /// Colours of things by their place in the mesh's tables.
 [[nodiscard]] Rgb material_colour(const mesh::PrismMesh& mesh, std::int32_t material);
 [[nodiscard]] Rgb net_colour(std::int32_t net);

@@ -24,6 +24,9 @@ struct Camera {
 /// "iso", "top", "bottom", "front", "back", "left", "right". @throws Error usage (101) listing the names.
 [[nodiscard]] Camera parse_camera(std::string_view name);
 
+/// Unit vector from the board towards the camera.
+[[nodiscard]] std::array<double, 3> direction_of(const Camera& camera);
+
 enum class Edges { fading, on, off };  ///< fading: mesh edges vanish where cells are only a few pixels large
 
 struct Background {

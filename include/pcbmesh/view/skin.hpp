@@ -17,7 +17,7 @@ enum class SkinMode {
   outer,      ///< nothing else: the closed surface of all that is shown
   materials,  ///< cells of different materials: each material is closed
   groups,     ///< cells of different volume groups: each group is closed
-  layers,     ///< cells of different slabs: each slab is closed, for exploded views
+  layers,     ///< cells of different layers: each layer is closed, for exploded views
 };
 
 /// Plane square to an axis. What lies beyond it is cut away, and the cut shows.
@@ -55,7 +55,7 @@ using SkinVisitor = std::function<void(std::span<const SkinFace>)>;
 /// Faces are those of whole slabs; a wall stands for one quadrilateral per sub-layer.
 ///
 /// @guarantee V1  outer, no section: the faces used by exactly one shown prism, each once
-/// @guarantee V2  materials, groups, layers: the same of every material, group or slab on its own
+/// @guarantee V2  materials, groups, layers: the same of every material, group or layer on its own
 /// @guarantee V3  memory O(planar mesh + regions x slabs), never O(prisms); the same faces in the same order every time
 /// @cost O(triangles x slabs) byte comparisons, one pass over the planar edges.
 void visit_skin(const mesh::PrismMesh& mesh, const Visibility& visibility, const SkinVisitor& visit);
