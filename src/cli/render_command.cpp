@@ -62,7 +62,7 @@ int run(const Options& options) {
                                               {"prisms", result.mesh.num_prisms()},
                                               {"visible_triangles", faces.num_triangles},
                                               {"visible_quads", faces.num_quads}}
-                          .dump(2));
+                           .dump(2));
   } else if (!options.quiet)
     fmt::print("{}: {} prisms, {} bytes\n", options.output, grouped(result.mesh.num_prisms()),
                grouped(static_cast<std::int64_t>(picture.size())));

@@ -86,7 +86,9 @@ class Browser:
         elif method == "Runtime.exceptionThrown":
             self.console.append(json.dumps(parameters["exceptionDetails"])[:600])
         elif method == "Log.entryAdded" and parameters["entry"]["level"] in ("error", "warning"):
-            self.console.append(parameters["entry"]["text"])
+            # Chromium without a graphics card reads every frame back itself, and its driver remarks on that.
+            if "GL Driver Message" not in parameters["entry"]["text"]:
+                self.console.append(parameters["entry"]["text"])
         elif method == "Network.requestWillBeSent":
             self.requests.append(parameters["request"]["url"])
         self.events.append(method)
@@ -133,7 +135,7 @@ class Browser:
         self.mouse("mouseReleased", x1, y1, clicks=1)
 
     def key(self, key, shift=False):
-        text = key if len(key) == 1 else ""
+        text = key if len(key) == 1 else "\r" if key == "Enter" else ""
         code = {"ArrowLeft": 37, "ArrowUp": 38, "ArrowRight": 39, "ArrowDown": 40, "Enter": 13, "Escape": 27, "Tab": 9}.get(key, ord(key.upper()[0]) if text else 0)
         for kind in ("keyDown", "keyUp"):
             self.call("Input.dispatchKeyEvent", type=kind, key=key, text=text if kind == "keyDown" else "", windowsVirtualKeyCode=code, modifiers=8 if shift else 0)
