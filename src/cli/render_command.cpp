@@ -12,6 +12,7 @@
 #include "pcbmesh/pipeline/write_outputs.hpp"
 #include "pcbmesh/view/render.hpp"
 #include "src/cli/commands.hpp"
+#include "src/cli/mesh_or_draw.hpp"
 #include "src/cli/picture_options.hpp"
 #include "src/cli/study_options.hpp"
 #include "src/cli/terminal.hpp"
@@ -50,7 +51,7 @@ int run(const Options& options) {
   const Progress progress = terminal_progress(options.quiet);
   progress.at("read", 0);
   const formats::ReadBoardResult read = formats::read_board(options.board, options.from, progress);
-  const pipeline::MeshBoardResult result = pipeline::mesh_board(read.board, study, progress);
+  const pipeline::MeshBoardResult result = mesh_or_draw(read.board, study, options.output, progress);
   progress.at("draw", 0);
   const std::string picture = draw(options, result.mesh, ending);
   clear_progress();

@@ -11,6 +11,7 @@
 #include "pcbmesh/pipeline/write_outputs.hpp"
 #include "pcbmesh/view/report.hpp"
 #include "src/cli/commands.hpp"
+#include "src/cli/mesh_or_draw.hpp"
 #include "src/cli/page_contents.hpp"
 #include "src/cli/study_options.hpp"
 #include "src/cli/terminal.hpp"
@@ -33,7 +34,7 @@ int run(const Options& options) {
   const Progress progress = terminal_progress(options.quiet);
   progress.at("read", 0);
   const formats::ReadBoardResult read = formats::read_board(options.board, options.from, progress);
-  pipeline::MeshBoardResult result = pipeline::mesh_board(read.board, study, progress);
+  pipeline::MeshBoardResult result = mesh_or_draw(read.board, study, options.output, progress);
   Diagnostics all = read.diagnostics;
   all.merge(result.diagnostics);
   result.diagnostics = std::move(all);
