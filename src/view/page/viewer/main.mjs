@@ -116,7 +116,7 @@ class Page {
         else entries.set(g.name, g.colour);
       });
     }
-    const most = 14;
+    const most = 9;
     const list = element("ul", {});
     for (const [name, colour] of [...entries].slice(0, most)) {
       const swatch = element("span", { class: "swatch" });
