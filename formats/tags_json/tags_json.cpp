@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "formats/sink/file_sink.hpp"
-#include "formats/tags_json/group_names.hpp"
+#include "pcbmesh/mesh/group_names.hpp"
 
 namespace pcbmesh::formats::tags_json {
 namespace {
@@ -26,7 +26,7 @@ template <class Tags>
 std::vector<std::string> names_of(const Tags& tags) {
   std::vector<std::string> names;
   for (const auto& tag : tags) names.push_back(tag.name);
-  return group_names(names);
+  return mesh::group_names(names);
 }
 
 Json volumes(const mesh::PrismMesh& mesh) {
@@ -64,13 +64,59 @@ Json faces(const mesh::PrismMesh& mesh) {
   const std::vector<std::string> names = names_of(mesh.face_tags());
   for (std::size_t i = 0; i < names.size(); ++i) {
     const mesh::FaceTag& tag = mesh.face_tags()[i];
-    out.push_back({{"id", tag.id},
-                   {"dimension", 2},
-                   {"name", names[i]},
-                   {"kind", tag.kind == mesh::FaceTagKind::outer ? "outer" : "conductor"},
-                   {"net", net_or_null(mesh, tag.net)},
-                   {"num_faces", tag.num_triangles + tag.num_quads},
-                   {"area_m2", tag.area_m2}});
+    Json face{{"id", tag.id},
+              {"dimension", 2},
+              {"name", names[i]},
+              {"kind", mesh::name_of(tag.kind)},
+              {"inner", tag.is_inner},
+              {"net", net_or_null(mesh, tag.net)},
+              {"condition", mesh::name_of(tag.condition)},
+              {"num_faces", tag.num_triangles + tag.num_quads},
+              {"area_m2", tag.area_m2}};
+    if (tag.condition == mesh::BoundaryCondition::impedance) face["impedance_ohm"] = tag.impedance_ohm;
+    if (tag.material >= 0) face["material"] = mesh.materials()[static_cast<std::size_t>(tag.material)].name;
+    if (tag.thickness_m > 0) face["thickness_m"] = tag.thickness_m;
+    if (tag.port >= 0) face["port"] = mesh.ports()[static_cast<std::size_t>(tag.port)].name;
+    if (tag.partner >= 0) face["partner"] = names[static_cast<std::size_t>(tag.partner)];
+    out.push_back(std::move(face));
+  }
+  return out;
+}
+
+Json ports(const mesh::PrismMesh& mesh) {
+  Json out = Json::array();
+  for (const mesh::Port& port : mesh.ports())
+    out.push_back({{"name", port.name},
+                   {"kind", port.kind == mesh::PortKind::lumped ? "lumped" : "wave"},
+                   {"impedance_ohm", port.impedance_ohm},
+                   {"excited", port.is_excited},
+                   {"direction", port.direction},
+                   {"length_m", port.length_m},
+                   {"width_m", port.width_m},
+                   {"positive_net", net_or_null(mesh, port.positive_net)},
+                   {"negative_net", net_or_null(mesh, port.negative_net)},
+                   {"at_m", port.at_m}});
+  return out;
+}
+
+/// Height of each layer; the z levels of all its sub-layers.
+Json layers(const mesh::PrismMesh& mesh) {
+  const mesh::LayerPlan& plan = mesh.plan();
+  // A layer is one or several adjacent slabs; the slabs of a volume tag say which.
+  std::vector<std::int32_t> layer_of_slab(static_cast<std::size_t>(plan.num_slabs()), -1);
+  for (std::int32_t t = 0; t < mesh.planar().num_triangles(); ++t)
+    for (std::int32_t slab = 0; slab < plan.num_slabs(); ++slab)
+      if (const std::int32_t tag = mesh.tag_of(slab, t); tag >= 0)
+        layer_of_slab[static_cast<std::size_t>(slab)] = mesh.volume_tags()[static_cast<std::size_t>(tag)].layer;
+  Json out = Json::array();
+  for (std::size_t layer = 0; layer < mesh.layers().size(); ++layer) {
+    Json levels = Json::array();
+    for (std::int32_t slab = 0; slab < plan.num_slabs(); ++slab) {
+      if (layer_of_slab[static_cast<std::size_t>(slab)] != static_cast<std::int32_t>(layer)) continue;
+      for (std::int32_t k = plan.first_sublayer(slab) + (levels.empty() ? 0 : 1); k <= plan.first_sublayer(slab + 1); ++k)
+        levels.push_back(plan.z_m()[static_cast<std::size_t>(k)]);
+    }
+    if (!levels.empty()) out.push_back({{"name", mesh.layers()[layer]}, {"levels_m", std::move(levels)}});
   }
   return out;
 }
@@ -115,8 +161,10 @@ void write_tags(const mesh::PrismMesh& mesh, const std::filesystem::path& file, 
   out["schema_version"] = schema_version;
   out["unit_m"] = metres_per(unit);
   out["bounding_box_m"] = bounding_box(mesh);
+  out["layers"] = layers(mesh);
   out["volumes"] = volumes(mesh);
   out["faces"] = faces(mesh);
+  out["ports"] = ports(mesh);
   out["materials"] = materials(mesh);
   out["nets"] = nets(mesh);
   out["touching_nets"] = touching_nets(mesh);
