@@ -26,13 +26,15 @@ inline constexpr std::array<Choice<RegionKind>, 3> region_names{
     {{RegionKind::whole, "whole"}, {RegionKind::nets, "nets"}, {RegionKind::box, "box"}}};
 inline constexpr std::array<Choice<ConductorMode>, 2> conductor_names{
     {{ConductorMode::solid, "solid"}, {ConductorMode::hollow, "hollow"}}};
-/// In the order of the paper's case numbers: none, then cases 1 to 5.
-inline constexpr std::array<Choice<HeightPolicy>, 6> policy_names{{{HeightPolicy::none, "none"},
+/// In the order of their numbers: none, the paper's cases 1 to 5, our 6 and 7.
+inline constexpr std::array<Choice<HeightPolicy>, 8> policy_names{{{HeightPolicy::none, "none"},
                                                                    {HeightPolicy::basic, "basic"},
                                                                    {HeightPolicy::average, "average"},
                                                                    {HeightPolicy::maximum, "maximum"},
                                                                    {HeightPolicy::minimum, "minimum"},
-                                                                   {HeightPolicy::thinnest_layer, "thinnest_layer"}}};
+                                                                   {HeightPolicy::thinnest_layer, "thinnest_layer"},
+                                                                   {HeightPolicy::weighted, "weighted"},
+                                                                   {HeightPolicy::matched, "matched"}}};
 inline constexpr std::array<Choice<SublayerRule>, 6> sublayer_names{{{SublayerRule::floor, "floor"},
                                                                      {SublayerRule::round, "round"},
                                                                      {SublayerRule::ceil, "ceil"},
