@@ -94,6 +94,21 @@ ResolvedNames resolve_names(const Board& board, const Study& study) {
   return names;
 }
 
+/// The paper projects the outline of every feature, those inside other copper too; here copper of a net is united before. Each
+/// shape as a body of its own keeps its outline.
+void keep_every_outline(model::ModelParts& parts) {
+  std::vector<bool> is_taken(parts.bodies.size(), false);
+  for (model::BodyShape& shape : parts.shapes) {
+    const auto body = static_cast<std::size_t>(shape.body);
+    if (is_taken[body]) {
+      shape.body = static_cast<std::int32_t>(parts.bodies.size());
+      parts.bodies.push_back(model::Body(parts.bodies[body]));
+    } else {
+      is_taken[body] = true;
+    }
+  }
+}
+
 }  // namespace
 
 model::Model compose(const Board& board, const Study& study, Diagnostics& diagnostics) {
@@ -110,6 +125,7 @@ model::Model compose(const Board& board, const Study& study, Diagnostics& diagno
   add_copper(board, study, names.rules, footprint, stack, parts, diagnostics);
   add_holes(board, study, names.rules, footprint, stack, parts);
   measure_narrowest(board, footprint, parts);
+  if (study.paper_compat) keep_every_outline(parts);
   if (std::none_of(parts.bodies.begin(), parts.bodies.end(), [](const model::Body& body) {
         return body.kind == model::BodyKind::copper || body.kind == model::BodyKind::barrel;
       }))

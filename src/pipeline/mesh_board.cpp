@@ -142,7 +142,7 @@ MeshBoardResult mesh_board(const board::Board& board, const study::Study& study,
                      [&] { return triangulate::triangulate(graph.graph, model, options, diagnostics, progress); });
       heights = layering::height_statistics(planar.mesh);
     }
-    counts = study.paper_compat ? layering::paper_counts(model.slabs(), study.policy, height_m.value_or(0))
+    counts = study.paper_compat ? layering::paper_counts(model.slabs(), study.policy)
                                 : layering::sublayer_counts(model.slabs(), study.sublayers, height_m, heights);
   }
 
