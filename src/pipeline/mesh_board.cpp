@@ -134,8 +134,11 @@ MeshBoardResult mesh_board(const board::Board& board, const study::Study& study,
     if (height_m) feedback_m = layering::feedback_edge_m(study.policy, *height_m, options.longest_edge_nm * metres_per_nm);
     if (feedback_m) {
       const double forecast = area_m2(planar.mesh) / (area_over_edge_squared * *feedback_m * *feedback_m);
+      // The sub-layers of the final mesh are not known yet; by the common height they are not far off.
+      double sublayers = 0;
+      for (const model::Slab& slab : model.slabs()) sublayers += layering::forecast_sublayers(study, slab, *height_m);
       require_budget(
-          forecast * static_cast<double>(model.slabs().size()), study,
+          forecast * sublayers, study,
           fmt::format("height policy '{}' with edges of {:.4g} um", study::name_of(study.policy), *feedback_m * 1e6));
       options.longest_edge_nm = *feedback_m / metres_per_nm;
       planar = timed("triangulate again",

@@ -37,8 +37,9 @@ def plot(title, x_label, y_label, series, x_range, y_range):
     for i, (name, points, kind) in enumerate(series):
         colour = COLOURS[i % len(COLOURS)]
         inside = [(x(a), y(b)) for a, b in points if x_range[0] <= a <= x_range[1] and y_range[0] <= b <= y_range[1]]
-        if kind == "dots":
-            out += [f'<circle cx="{a:.1f}" cy="{b:.1f}" r="3" fill="{colour}"/>' for a, b in inside]
+        if kind in ("dots", "discs"):
+            radius = 2 if kind == "dots" else 5
+            out += [f'<circle cx="{a:.1f}" cy="{b:.1f}" r="{radius}" fill="{colour}"/>' for a, b in inside]
         else:
             dash = ' stroke-dasharray="6 4"' if kind == "dashed" else ""
             line = " ".join(f"{a:.1f},{b:.1f}" for a, b in inside)
@@ -56,8 +57,8 @@ def pareto(example, match, paper):
     points = [(log(s["prisms"]), least(s)) for s in match["meshes"]]
     others = [(log(prisms), quality) for prisms, quality in paper]
     return plot(f"{example}: quality over prisms", "log10 of the number of prisms", "smaller of mean and volume-weighted q_p",
-                [("Pareto front of policy matched, predicted", front, "line"), ("meshes made on the way", points, "dots"),
-                 ("the paper's five cases, floor", others, "dots"), (f"knee: {10 ** knee[0]:,.0f} prisms, {knee[1]:.3f}", [knee], "dots")],
+                [("Pareto front of policy matched, predicted", front, "line"), ("meshes made on the way", points, "discs"),
+                 ("the paper's five cases, floor", others, "discs"), (f"knee: {10 ** knee[0]:,.0f} prisms, {knee[1]:.3f}", [knee], "discs")],
                 (math.floor(min(a for a, _ in front + others)), math.ceil(max(a for a, _ in others))), (0, 1.05))
 
 
