@@ -48,10 +48,10 @@ class Stopwatch {
 
 Nm longest_edge_nm(const study::Study& study, const model::Model& model) {
   std::optional<Nm> edge = study.longest_edge;
-  if (study.frequency_hz) {
+  if (const std::optional<double> frequency_hz = study::highest_frequency_hz(study)) {
     double slowest = 1;
     for (const model::Slab& slab : model.slabs()) slowest = std::max(slowest, layering::slowness(model, slab));
-    const double wavelength_m = speed_of_light_m_per_s / *study.frequency_hz / slowest;
+    const double wavelength_m = speed_of_light_m_per_s / *frequency_hz / slowest;
     const double edge_m = wavelength_m / study.height_bounds.elements_per_wavelength;
     const auto bound = static_cast<Nm>(std::max(1.0, std::floor(edge_m / metres_per_nm)));
     edge = std::min(edge.value_or(bound), bound);

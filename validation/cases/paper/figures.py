@@ -16,7 +16,7 @@ def _ticks(low, high, most=8):
     return [k * step for k in range(first, math.floor(high / step + 1e-9) + 1)]
 
 
-def plot(title, x_label, y_label, series, x_range, y_range):
+def plot(title, x_label, y_label, series, x_range, y_range, legend_top=TOP + 14):
     """SVG text. series: (name, points, "line" | "dashed" | "dots")."""
     def x(value):
         return LEFT + (value - x_range[0]) / (x_range[1] - x_range[0]) * (WIDTH - LEFT - RIGHT)
@@ -44,7 +44,7 @@ def plot(title, x_label, y_label, series, x_range, y_range):
             dash = ' stroke-dasharray="6 4"' if kind == "dashed" else ""
             line = " ".join(f"{a:.1f},{b:.1f}" for a, b in inside)
             out.append(f'<polyline points="{line}" fill="none" stroke="{colour}" stroke-width="1.6"{dash}/>')
-        out.append(f'<text x="{WIDTH - RIGHT - 8}" y="{TOP + 14 + 17 * i}" text-anchor="end" fill="{colour}">{name}</text>')
+        out.append(f'<text x="{WIDTH - RIGHT - 8}" y="{legend_top + 17 * i}" text-anchor="end" fill="{colour}">{name}</text>')
     return "\n".join(out) + "\n</svg>\n"
 
 
@@ -59,7 +59,7 @@ def pareto(example, match, paper):
     return plot(f"{example}: quality over prisms", "log10 of the number of prisms", "smaller of mean and volume-weighted q_p",
                 [("Pareto front of policy matched, predicted", front, "line"), ("meshes made on the way", points, "discs"),
                  ("the paper's five cases, floor", others, "discs"), (f"knee: {10 ** knee[0]:,.0f} prisms, {knee[1]:.3f}", [knee], "discs")],
-                (math.floor(min(a for a, _ in front + others)), math.ceil(max(a for a, _ in others))), (0, 1.05))
+                (math.floor(min(a for a, _ in front + others)), math.ceil(max(a for a, _ in others))), (0, 1.05), HEIGHT - BOTTOM - 17 * 4)
 
 
 def figure4(data):
