@@ -56,6 +56,7 @@ std::shared_ptr<StudyOptions> add_study_options(CLI::App& command) {
   command.add_option("--air-above", o->air_above, "Air above the board")->group(domain);
   command.add_option("--air-below", o->air_below, "Air below the board")->group(domain);
   command.add_option("--air-around", o->air_around, "Air beside the whole board (default 0)")->group(domain);
+  o->fabrication = add_fabrication_options(command);
   add_physics_options(command, *o);
   constexpr const char* sizes = "Sizes and heights";
   command
@@ -121,6 +122,7 @@ study::Study study_from(const StudyOptions& o) {
       throw Error(ErrorCode::usage, fmt::format("--max-prisms {} is no count", o.max_prisms));
     s.max_prisms = static_cast<std::int64_t>(o.max_prisms);
   }
+  take_fabrication_options(*o.fabrication, s.fabrication);
   take_physics_options(o, s);
   study::check(s);
   return s;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pcbmesh/study/study.hpp"
+#include "src/cli/fabrication_options.hpp"
 
 namespace pcbmesh::cli {
 
@@ -17,6 +18,7 @@ struct StudyOptions {
   std::vector<std::string> hollow, solid, sheet, ports, boundaries;
   bool smooth = false;
   double min_angle = 0, growth = 0, max_prisms = 0;
+  std::shared_ptr<FabricationOptions> fabrication;
 };
 
 /// Adds the flags to a command.

@@ -8,22 +8,55 @@
 #include "pcbmesh/board/board.hpp"
 #include "pcbmesh/model/model.hpp"
 #include "pcbmesh/study/study.hpp"
+#include "src/compose/materials.hpp"
 
 namespace pcbmesh::compose {
 
-/// The board's layers as slabs.
-struct Stack {
-  std::vector<board::Material> materials;  ///< the board's, and air
-  std::int32_t air = -1;                   ///< index into materials
-  std::int32_t outside = -1;               ///< air, or -1 where the study asks for no air at all
-  std::vector<model::Slab> slabs;          ///< bottom to top
-  std::vector<std::int32_t> copper_slab;   ///< slab of copper layer i; i counts from the top
-  std::int32_t first_board_slab = 0;       ///< lowest slab of the board itself
-  std::int32_t last_board_slab = 0;        ///< highest
+/// Adjacent slabs, both included.
+struct SlabRange {
+  std::int32_t first = 0, last = 0;
 };
 
-/// Solder mask is left out and noted. A gap in copper is filled by the neighbouring dielectric: the one called prepreg if
-/// exactly one of the two is, else the one below; by air on the outer faces of the stack.
-[[nodiscard]] Stack build_stack(const board::Board& board, const study::Study& study, Diagnostics& diagnostics);
+/// Part of a copper layer's height in which its copper is equally wide.
+struct CopperSlice {
+  SlabRange slabs;
+  Nm inset = 0;  ///< by which either edge is pulled in (etching); 0 = as drawn
+};
+
+/// Solder mask on one side of the board: slabs outside the copper.
+struct MaskSlabs {
+  SlabRange slabs;                ///< outside the outer copper
+  std::int32_t film = -1;         ///< the one of them that holds mask over copper only; the other, if any, holds it everywhere
+  std::int32_t copper_layer = 0;  ///< the outer copper it lies on
+  std::int32_t material = -1;     ///< of the mask
+};
+
+/// The board's layers as slabs.
+struct Stack {
+  std::int32_t air = -1;                                ///< index into materials
+  std::int32_t outside = -1;                            ///< air, or -1 where the study asks for no air at all
+  std::vector<model::Slab> slabs;                       ///< bottom to top
+  std::vector<SlabRange> copper_slabs;                  ///< of copper layer i; i counts from the top
+  std::vector<std::vector<CopperSlice>> copper_slices;  ///< of copper layer i, bottom to top; together its slabs
+  std::vector<MaskSlabs> masks;
+  std::int32_t first_board_slab = 0;  ///< lowest slab of the board itself
+  std::int32_t last_board_slab = 0;   ///< highest
+};
+
+/// Which side the gaps of a copper layer are filled from.
+enum class FillSide { automatic, above, below, material };
+
+struct ResolvedFill {
+  FillSide side = FillSide::automatic;
+  std::int32_t material = -1;  ///< side material
+};
+
+/// Solder mask is meshed if the study asks for it, else left out and noted. A gap in copper is filled as `fills` says (one
+/// per copper layer); automatic = by the neighbouring dielectric: the one called prepreg if exactly one of the two is, else
+/// the one below; by air, or mask as high as it lies, on the outer faces of the stack.
+///
+/// Etched copper is narrow on the side that its gaps are filled from: foil is laid on the core and etched from the other side.
+[[nodiscard]] Stack build_stack(const board::Board& board, const study::Study& study, const std::vector<ResolvedFill>& fills,
+                                MaterialTable& materials, Diagnostics& diagnostics);
 
 }  // namespace pcbmesh::compose

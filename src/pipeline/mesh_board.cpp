@@ -116,9 +116,11 @@ MeshBoardResult mesh_board(const board::Board& board, const study::Study& study,
   const std::optional<double> height_m = layering::common_height_m(study.policy, heights, model.slabs());
   std::optional<double> feedback_m;
   if (height_m) feedback_m = layering::feedback_edge_m(study.policy, *height_m, options.longest_edge_nm * metres_per_nm);
+  const Forecast expected = forecast(planar.mesh, feedback_m, model, study);
+  require_few_unknowns(expected, study);
   if (feedback_m) {
-    const double forecast = area_m2(planar.mesh) / (area_over_edge_squared * *feedback_m * *feedback_m);
-    require_budget(forecast * static_cast<double>(model.slabs().size()), study,
+    const double triangles = area_m2(planar.mesh) / (area_over_edge_squared * *feedback_m * *feedback_m);
+    require_budget(triangles * static_cast<double>(model.slabs().size()), study,
                    fmt::format("height policy '{}' with edges of {:.4g} um", study::name_of(study.policy), *feedback_m * 1e6));
     options.longest_edge_nm = *feedback_m / metres_per_nm;
     planar = timed("triangulate again",
@@ -139,11 +141,22 @@ MeshBoardResult mesh_board(const board::Board& board, const study::Study& study,
   progress.at("extrude", 0);
   mesh::PrismMesh prisms =
       timed("extrude", [&] { return extrude::extrude(planar.mesh, plan, model, graph.net_pieces, graph.touching_nets); });
+  if (study.fabrication.max_unknowns) require_few_unknowns(measured(prisms), study);
   progress.at("quality", 0);
   const layering::QualityStatistics quality = timed("quality", [&] { return layering::quality_statistics(prisms); });
 
-  return {std::move(prisms),    std::move(resolved),    graph.statistics, std::move(graph.ledger), planar.statistics, heights,
-          height_m.value_or(0), feedback_m.has_value(), quality,          std::move(diagnostics),  std::move(times)};
+  return {std::move(prisms),
+          std::move(resolved),
+          graph.statistics,
+          std::move(graph.ledger),
+          planar.statistics,
+          heights,
+          height_m.value_or(0),
+          feedback_m.has_value(),
+          quality,
+          expected,
+          std::move(diagnostics),
+          std::move(times)};
 }
 
 }  // namespace pcbmesh::pipeline
