@@ -50,14 +50,33 @@ Nm width_of(const geometry::Figure& figure) {
 
 }  // namespace
 
-bool is_hollow(const study::Study& study, const std::vector<ResolvedRule>& rules, std::int32_t net, std::int32_t copper_layer) {
-  bool hollow = study.conductors == study::ConductorMode::hollow;
+study::ConductorMode mode_of(const study::Study& study, const std::vector<ResolvedRule>& rules, std::int32_t net,
+                             std::int32_t copper_layer) {
+  study::ConductorMode mode = study.conductors;
   for (const ResolvedRule& rule : rules) {
     if (!rule.any_net && rule.net != net) continue;
     if (!rule.any_layer && rule.copper_layer != copper_layer) continue;
-    hollow = rule.hollow;
+    mode = rule.mode;
   }
-  return hollow;
+  return copper_layer < 0 && mode == study::ConductorMode::sheet ? study::ConductorMode::hollow : mode;
+}
+
+std::vector<char> find_sheet_layers(const Board& board, const study::Study& study, const std::vector<ResolvedRule>& rules,
+                                    const Footprint& footprint) {
+  const std::size_t num_layers = board.copper_layers().size(), num_nets = board.nets().size() + 1;
+  std::vector<char> has_copper(num_layers, 0), only_sheets(num_layers, 1), seen(num_layers * num_nets, 0);
+  for (const board::Shape& shape : board.shapes()) {
+    const auto layer = static_cast<std::size_t>(shape.copper_layer);
+    char& met = seen[layer * num_nets + static_cast<std::size_t>(shape.net + 1)];
+    if (met || !geometry::bounds(shape.figure).touches(footprint.box)) continue;
+    met = has_copper[layer] = 1;
+    if (mode_of(study, rules, shape.net, shape.copper_layer) != study::ConductorMode::sheet) only_sheets[layer] = 0;
+  }
+  constexpr std::int32_t some_net = -2;  // matched by rules for any net alone
+  for (std::size_t layer = 0; layer < num_layers; ++layer)
+    if (!has_copper[layer])
+      only_sheets[layer] = mode_of(study, rules, some_net, static_cast<std::int32_t>(layer)) == study::ConductorMode::sheet;
+  return only_sheets;
 }
 
 BodyShape shape_of(const geometry::Figure& figure, const study::Study& study, const Footprint& footprint, std::int64_t line) {
@@ -132,6 +151,22 @@ void add_copper(const Board& board, const study::Study& study, const std::vector
     std::map<std::int32_t, std::vector<BodyShape>> by_net;
     for (auto it = groups.lower_bound({layer, board::no_net}); it != groups.end() && it->first.first == layer; ++it)
       by_net.emplace(it->first.second, std::move(it->second));
+    const CopperPlace& place = stack.copper[static_cast<std::size_t>(layer)];
+    for (auto& [net, shapes] : by_net) {
+      if (mode_of(study, rules, net, layer) != study::ConductorMode::sheet) continue;
+      const board::StackupLayer& copper =
+          board.stackup()[static_cast<std::size_t>(board.copper_layers()[static_cast<std::size_t>(layer)])];
+      Body body{.name = fmt::format("copper {} on {}", short_net_name(board, net), board.copper_name(layer)),
+                .kind = BodyKind::copper,
+                .material = copper.material,
+                .net = net,
+                .priority = copper_priority};
+      body.sheet = model::SheetPlace{place.sheet, copper.name, copper.thickness_nm};
+      body.first_slab = body.last_slab = std::min(place.low, static_cast<std::int32_t>(stack.slabs.size()) - 1);
+      append_body(parts, std::move(body), shapes);
+    }
+    std::erase_if(by_net,
+                  [&](const auto& item) { return mode_of(study, rules, item.first, layer) == study::ConductorMode::sheet; });
     for (const CopperSlice& slice : stack.copper_slices[static_cast<std::size_t>(layer)])
       for (auto& [net, shapes] : etched(by_net, slice.inset))
         append_body(parts,
@@ -143,7 +178,7 @@ void add_copper(const Board& board, const study::Study& study, const std::vector
                      .first_slab = slice.slabs.first,
                      .last_slab = slice.slabs.last,
                      .priority = copper_priority,
-                     .hollow = is_hollow(study, rules, net, layer)},
+                     .hollow = mode_of(study, rules, net, layer) == study::ConductorMode::hollow},
                     std::move(shapes));
   }
   for (const std::vector<CopperSlice>& slices : stack.copper_slices)

@@ -17,6 +17,7 @@
 #include "src/compose/holes.hpp"
 #include "src/compose/mask.hpp"
 #include "src/compose/materials.hpp"
+#include "src/compose/ports.hpp"
 #include "src/compose/stack.hpp"
 
 namespace pcbmesh::compose {
@@ -25,12 +26,31 @@ namespace {
 using board::Board;
 using study::Study;
 
+model::SideCondition side_condition(const study::Boundary& boundary) {
+  switch (boundary.kind) {
+    case study::BoundaryKind::absorbing:
+      return {model::SideKind::absorbing, 0};
+    case study::BoundaryKind::pec:
+      return {model::SideKind::pec, 0};
+    case study::BoundaryKind::pmc:
+      return {model::SideKind::pmc, 0};
+    case study::BoundaryKind::impedance:
+      return {model::SideKind::impedance, boundary.ohms};
+    case study::BoundaryKind::none:
+    case study::BoundaryKind::periodic:  // refused by study::check
+      break;
+  }
+  return {};
+}
+
 /// Names of the study as indices of the board.
 struct ResolvedNames {
   std::vector<std::int32_t> nets;
   std::vector<ResolvedRule> rules;
   HolePlan holes;
   std::vector<ResolvedFill> fills;  ///< per copper layer
+  std::string unknown;              ///< what was not found; empty = nothing
+  bool must_stop = false;           ///< what is unknown concerns how the board is made
 };
 
 /// Looks names up and collects every unknown one, so that one run tells them all.
@@ -70,7 +90,8 @@ class NameResolver {
     return found;
   }
 
-  void throw_if_unknown() const {
+  /// What is unknown, in one sentence; empty = nothing.
+  [[nodiscard]] std::string text() const {
     std::string text;
     if (!unknown_nets_.empty())
       text = fmt::format("the board has no net called {}; `pcbmesh inspect` lists its {} nets", unknown_nets_,
@@ -80,7 +101,7 @@ class NameResolver {
                           fmt::join(layers_, ", "));
     if (!unknown_materials_.empty())
       text += fmt::format("{}neither board nor library has a material called {}", text.empty() ? "" : "; ", unknown_materials_);
-    if (!text.empty()) throw Error(ErrorCode::name_unknown, text, {.file = board_.source()});
+    return text;
   }
 
  private:
@@ -149,17 +170,24 @@ ResolvedNames resolve_names(const Board& board, const Study& study, MaterialTabl
   for (const std::string& net : study.nets) names.nets.push_back(resolver.net(net));
   for (const study::ConductorRule& rule : study.conductor_rules) {
     ResolvedRule resolved;
-    resolved.hollow = rule.mode == study::ConductorMode::hollow;
+    resolved.mode = rule.mode;
     resolved.any_net = rule.net.empty();
     if (!resolved.any_net) resolved.net = resolver.net(rule.net);
     resolved.any_layer = rule.layer.empty();
     if (!resolved.any_layer) resolved.copper_layer = resolver.copper_layer(rule.layer);
     names.rules.push_back(resolved);
   }
+  for (const study::Port& port : study.ports) {
+    (void)resolver.net(port.net);
+    if (!port.reference.empty()) (void)resolver.net(port.reference);
+    if (!port.at.layer.empty()) (void)resolver.copper_layer(port.at.layer);
+  }
+  const std::string known_so_far = resolver.text();
   names.holes = resolve_holes(study.fabrication, resolver, materials);
   names.fills = resolve_fills(board, study.fabrication, resolver, materials);
-  resolver.throw_if_unknown();
-  require_backdrills_from_outside(board, study, names.holes);
+  names.unknown = resolver.text();
+  names.must_stop = names.unknown != known_so_far;
+  if (!names.must_stop) require_backdrills_from_outside(board, study, names.holes);
   return names;
 }
 
@@ -169,8 +197,12 @@ model::Model compose(const Board& board, const Study& study, Diagnostics& diagno
   study::check(study);
   MaterialTable materials(board, study, diagnostics);
   const ResolvedNames names = resolve_names(board, study, materials);
-  Stack stack = build_stack(board, study, names.fills, materials, diagnostics);
+  // A region of unknown nets is nowhere; otherwise what is wrong with the ports is told in the same run.
+  if (!names.unknown.empty() && (study.ports.empty() || names.must_stop || std::ranges::count(names.nets, board::no_net) > 0))
+    throw Error(ErrorCode::name_unknown, names.unknown, {.file = board.source()});
   const Footprint footprint = build_footprint(board, study, names.nets, diagnostics);
+  Stack stack =
+      build_stack(board, study, find_sheet_layers(board, study, names.rules, footprint), names.fills, materials, diagnostics);
 
   model::ModelParts parts;
   parts.source = board.source();
@@ -181,6 +213,16 @@ model::Model compose(const Board& board, const Study& study, Diagnostics& diagno
   add_copper(board, study, names.rules, footprint, stack, parts, diagnostics);
   add_holes(board, study, names.rules, names.holes, footprint, stack, parts, diagnostics);
   add_mask(board, study, footprint, stack, parts, diagnostics);
+  std::vector<study::Fault> faults;
+  add_ports(board, study, names.rules, footprint, stack, parts, faults);
+  if (!names.unknown.empty() || !faults.empty()) {
+    const std::string more = study::text_of(faults);
+    const std::string gap = names.unknown.empty() || more.empty() ? "" : "\n  ";
+    throw Error(names.unknown.empty() ? ErrorCode::port_invalid : ErrorCode::name_unknown, names.unknown + gap + more,
+                {.file = board.source()});
+  }
+  for (std::size_t i = 0; i < study::num_hull_sides; ++i) parts.sides[i] = side_condition(study.boundaries[i]);
+  parts.conductors_are_perfect = study.conductor_surface == study::ConductorSurface::pec;
   if (std::none_of(parts.bodies.begin(), parts.bodies.end(), [](const model::Body& body) {
         return body.kind == model::BodyKind::copper || body.kind == model::BodyKind::barrel;
       }))

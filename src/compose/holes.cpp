@@ -80,7 +80,7 @@ class HoleBuilder {
     }
     const auto index = static_cast<std::size_t>(&drill - board_.drills().data());
     const bool is_merged = std::binary_search(merged_.members.begin(), merged_.members.end(), index);
-    if (is_merged || is_hollow(study_, rules_, drill.net, -1)) return;
+    if (is_merged || mode_of(study_, rules_, drill.net, -1) == study::ConductorMode::hollow) return;
     const std::optional<ResolvedHoleRule> rule = rule_of(drill);
     if (rule) add_core(drill, rings, *rule);
   }
@@ -142,7 +142,7 @@ class HoleBuilder {
           fmt::format("the board does not state the plating of its holes; {} is taken", format_length(rule.how.plating)),
           {.file = board_.source()});
     SlabRange slabs{bottom_slab(drill.last_copper), top_slab(drill.first_copper)};
-    if (rule.how.capped) slabs = {copper(drill.last_copper).last + 1, copper(drill.first_copper).first - 1};
+    if (rule.how.capped) slabs = {copper(drill.last_copper).high, copper(drill.first_copper).low - 1};
     if (slabs.last < slabs.first) return;
     const std::int32_t material = rule.how.fill == study::ViaFill::plugged ? rule.plug : stack_.air;
     cores_[{slabs.first, slabs.last, material}].push_back(
@@ -166,11 +166,9 @@ class HoleBuilder {
                       {.file = board_.source()});
   }
 
-  [[nodiscard]] const SlabRange& copper(std::int32_t layer) const {
-    return stack_.copper_slabs[static_cast<std::size_t>(layer)];
-  }
-  [[nodiscard]] std::int32_t bottom_slab(std::int32_t layer) const { return copper(layer).first; }
-  [[nodiscard]] std::int32_t top_slab(std::int32_t layer) const { return copper(layer).last; }
+  [[nodiscard]] const CopperPlace& copper(std::int32_t layer) const { return stack_.copper[static_cast<std::size_t>(layer)]; }
+  [[nodiscard]] std::int32_t bottom_slab(std::int32_t layer) const { return copper(layer).low; }
+  [[nodiscard]] std::int32_t top_slab(std::int32_t layer) const { return copper(layer).high - 1; }
   /// A hole from the outermost copper goes on through dielectric outside it.
   [[nodiscard]] SlabRange through(const Span& span) const {
     const auto last_copper = static_cast<std::int32_t>(board_.copper_layers().size()) - 1;
@@ -181,6 +179,7 @@ class HoleBuilder {
   void append_unplated() {
     for (auto& [span, shapes] : unplated_) {
       const SlabRange slabs = through(span);
+      if (slabs.last < slabs.first) continue;  // within one layer that has no slab
       append_body(parts_,
                   {.name = fmt::format("hole {} to {}", board_.copper_name(span.first), board_.copper_name(span.second)),
                    .kind = BodyKind::hole,
@@ -195,6 +194,7 @@ class HoleBuilder {
   void append_barrels() {
     for (auto& [key, shapes] : plated_) {
       const auto [top, bottom, net] = key;
+      if (top_slab(top) < bottom_slab(bottom)) continue;
       append_body(parts_,
                   {.name = fmt::format("barrel {} {} to {}", short_net_name(board_, net), board_.copper_name(top),
                                        board_.copper_name(bottom)),
@@ -204,7 +204,7 @@ class HoleBuilder {
                    .first_slab = bottom_slab(bottom),
                    .last_slab = top_slab(top),
                    .priority = barrel_priority,
-                   .hollow = is_hollow(study_, rules_, net, -1)},
+                   .hollow = mode_of(study_, rules_, net, -1) == study::ConductorMode::hollow},
                   std::move(shapes));
     }
   }
@@ -224,6 +224,7 @@ class HoleBuilder {
   void append_backdrilled() {
     for (auto& [span, shapes] : backdrilled_) {
       const SlabRange slabs = through(span);
+      if (slabs.last < slabs.first) continue;  // within one layer that has no slab
       append_body(parts_,
                   {.name = fmt::format("backdrill {} to {}", board_.copper_name(span.first), board_.copper_name(span.second)),
                    .kind = BodyKind::filler,

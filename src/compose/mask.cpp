@@ -30,7 +30,7 @@ void add_mask(const board::Board& board, const study::Study& study, const Footpr
     diagnostics.assume(Severity::note, "compose.mask_openings",
                        "the board does not say where solder mask is open: pads are bare to their edge, vias and tracks covered",
                        {.file = board.source(), .layer = layer});
-    if (!film.empty())
+    if (!film.empty() && mask.film >= 0)
       append_body(parts,
                   {.name = fmt::format("mask over {}", layer),
                    .kind = model::BodyKind::filler,

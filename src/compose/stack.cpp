@@ -113,12 +113,12 @@ void cut_at(Stairs& stairs, Nm height, Nm thickness) {
 
 class StackBuilder {
  public:
-  StackBuilder(const Board& board, const study::Study& study, const std::vector<ResolvedFill>& fills, MaterialTable& materials,
-               Diagnostics& diagnostics)
-      : board_(board), study_(study), fills_(fills), kept_(kept_layers(board, study, diagnostics)) {
+  StackBuilder(const Board& board, const study::Study& study, const std::vector<char>& only_sheets,
+               const std::vector<ResolvedFill>& fills, MaterialTable& materials, Diagnostics& diagnostics)
+      : board_(board), study_(study), only_sheets_(only_sheets), fills_(fills), kept_(kept_layers(board, study, diagnostics)) {
     stack_.air = materials.air();
     stack_.outside = study.air_above > 0 || study.air_below > 0 || study.air_around > 0 ? stack_.air : -1;
-    stack_.copper_slabs.resize(board.copper_layers().size());
+    stack_.copper.resize(board.copper_layers().size());
     stack_.copper_slices.resize(board.copper_layers().size());
   }
 
@@ -139,6 +139,11 @@ class StackBuilder {
         append(layer.name, model::SlabKind::dielectric, layer.thickness_nm, layer.material);
     }
     stack_.last_board_slab = next_slab() - 1;
+    if (stack_.last_board_slab < stack_.first_board_slab)
+      throw Error(ErrorCode::stackup_invalid,
+                  "every conductor is a sheet and the stackup has no dielectric: nothing has any height; make the conductors "
+                  "solid or hollow",
+                  {.file = board_.source()});
     if (study_.air_above > 0) append("air above", model::SlabKind::air, study_.air_above, stack_.air);
     return std::move(stack_);
   }
@@ -173,7 +178,9 @@ class StackBuilder {
     cut_at(stairs, mask_from, thickness);
 
     const auto at = static_cast<std::size_t>(copper);
-    stack_.copper_slabs[at].first = next_slab();
+    CopperPlace& place = stack_.copper[at];
+    place.low = place.high = place.sheet = next_slab();
+    if (only_sheets_[at] != 0) return;
     Nm bottom = 0;
     for (std::size_t part = 0; part < stairs.insets.size(); ++part) {
       const Nm top = part < stairs.heights.size() ? stairs.heights[part] : thickness;
@@ -188,21 +195,23 @@ class StackBuilder {
       append(layer.name, model::SlabKind::copper, top - bottom, material);
       bottom = top;
     }
-    stack_.copper_slabs[at].last = next_slab() - 1;
+    place.high = next_slab();
+    place.sheet = filling.is_narrow_on_top ? place.low : place.high;
   }
 
   /// A film over copper; where it is thicker than the copper, what rises above the copper covers the gaps too.
   void append_mask(std::size_t k) {
     const StackupLayer& layer = layer_at(k);
     const bool is_top = k + 1 < kept_.size() && layer_at(k + 1).kind == LayerKind::copper;
-    const Nm film = std::min(layer.thickness_nm, layer_at(is_top ? k + 1 : k - 1).thickness_nm);
+    const bool on_sheets = (is_top ? only_sheets_.front() : only_sheets_.back()) != 0;
+    const Nm film = on_sheets ? 0 : std::min(layer.thickness_nm, layer_at(is_top ? k + 1 : k - 1).thickness_nm);
     const Nm everywhere = layer.thickness_nm - film;
     MaskSlabs mask{.slabs = {next_slab(), 0},
                    .copper_layer = is_top ? 0 : static_cast<std::int32_t>(board_.copper_layers().size()) - 1,
                    .material = layer.material};
     if (is_top && everywhere > 0) append(layer.name, model::SlabKind::dielectric, everywhere, layer.material);
-    mask.film = next_slab();
-    append(layer.name, model::SlabKind::dielectric, film, stack_.air);
+    if (film > 0) mask.film = next_slab();
+    if (film > 0) append(layer.name, model::SlabKind::dielectric, film, stack_.air);
     if (!is_top && everywhere > 0) append(layer.name, model::SlabKind::dielectric, everywhere, layer.material);
     mask.slabs.last = next_slab() - 1;
     stack_.masks.push_back(mask);
@@ -210,6 +219,7 @@ class StackBuilder {
 
   const Board& board_;
   const study::Study& study_;
+  const std::vector<char>& only_sheets_;
   const std::vector<ResolvedFill>& fills_;
   std::vector<std::int32_t> kept_;
   Stack stack_;
@@ -218,9 +228,9 @@ class StackBuilder {
 
 }  // namespace
 
-Stack build_stack(const Board& board, const study::Study& study, const std::vector<ResolvedFill>& fills,
-                  MaterialTable& materials, Diagnostics& diagnostics) {
-  return StackBuilder(board, study, fills, materials, diagnostics).run();
+Stack build_stack(const Board& board, const study::Study& study, const std::vector<char>& only_sheets,
+                  const std::vector<ResolvedFill>& fills, MaterialTable& materials, Diagnostics& diagnostics) {
+  return StackBuilder(board, study, only_sheets, fills, materials, diagnostics).run();
 }
 
 }  // namespace pcbmesh::compose

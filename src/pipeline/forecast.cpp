@@ -107,8 +107,8 @@ void add_unknowns(Forecast& forecast) {
 
 }  // namespace
 
-Forecast forecast(const mesh::PlanarMesh& outlines, std::optional<double> fed_back_m, const model::Model& model,
-                  const study::Study& study) {
+Forecast forecast(const mesh::PlanarMesh& outlines, std::optional<double> fed_back_m, std::optional<double> height_m,
+                  std::span<const int> counts, const model::Model& model, const study::Study& study) {
   const PlaneForecast plane = forecast_plane(outlines, fed_back_m);
   layering::HeightStatistics heights = layering::height_statistics(outlines);
   if (fed_back_m) {
@@ -117,9 +117,13 @@ Forecast forecast(const mesh::PlanarMesh& outlines, std::optional<double> fed_ba
     heights.maximum = plane.greatest_height_m;
     heights.num_triangles = rounded(plane.triangles);
   }
-  const std::optional<double> height_m =
-      layering::common_height_m(study.policy, layering::height_statistics(outlines), model.slabs());
-  const mesh::LayerPlan plan = layering::choose_layers(model.slabs(), study.sublayers, height_m, heights);
+  std::vector<int> chosen(counts.begin(), counts.end());
+  if (chosen.empty())
+    chosen = study.paper_compat ? layering::paper_counts(model.slabs(), study.policy, height_m.value_or(0))
+                                : layering::sublayer_counts(model.slabs(), study.sublayers, height_m, heights);
+  const mesh::LayerPlan plan =
+      layering::divide_layers(model.slabs(), chosen, layering::slab_limits(model, study), study.height_bounds.height_growth)
+          .plan;
   Forecast made{.triangles = rounded(plane.triangles), .sublayers = plan.num_sublayers(), .counts = {}, .memory = {}};
   made.counts = stack_up(plane, outlines, plan, model);
   add_unknowns(made);

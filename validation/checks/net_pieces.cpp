@@ -54,6 +54,7 @@ NetPieces::NetPieces(const Context& context, NetContacts& cells) : context_(cont
   take_cell_contacts(cells);
   if (!skins_.empty()) {
     join_cells_to_skins(cells);
+    join_cells_to_sheets(cells);
     join_by_edges();
     join_across_hollows();
   }
@@ -158,6 +159,49 @@ void NetPieces::join_cells_to_skins(NetContacts& cells) {
           meet(skin.net, net, skin.face);
       }
     }
+  }
+}
+
+/// Sheets have no faces of cells beside them: a copper cell touches a sheet along an edge.
+void NetPieces::join_cells_to_sheets(NetContacts& cells) {
+  struct Side {
+    std::int64_t a, b;
+    std::int32_t skin;
+    bool operator<(const Side& other) const { return std::tie(a, b, skin) < std::tie(other.a, other.b, other.skin); }
+  };
+  std::vector<Side> sides;
+  std::vector<char> on_sheet(ix(context_.num_nodes()), 0);
+  for (std::size_t i = 0; i < skins_.size(); ++i) {
+    if (!skins_[i].is_sheet) continue;
+    const auto corners = context_.corners_of_face(skins_[i].face);
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      const std::int64_t a = corners[k], b = corners[k + 1 == corners.size() ? 0 : k + 1];
+      sides.push_back({std::min(a, b), std::max(a, b), static_cast<std::int32_t>(i)});
+      on_sheet[ix(a)] = 1;
+    }
+  }
+  if (sides.empty() || !cells.is_needed()) return;
+  std::sort(sides.begin(), sides.end());
+  for (std::int64_t cell = 0; cell < context_.num_cells(); ++cell) {
+    const std::int32_t cell_net = cells.net_of(cell);
+    if (cell_net < 0) continue;
+    const auto own = context_.corners_of_cell(cell);
+    if (std::ranges::count_if(own, [&](std::int64_t node) { return on_sheet[ix(node)] != 0; }) < 2) continue;
+    const auto piece = static_cast<std::int32_t>(
+        std::lower_bound(cell_pieces_.begin(), cell_pieces_.end(), cells.piece_of(cell)) - cell_pieces_.begin());
+    for (const std::int64_t a : own)
+      for (const std::int64_t b : own) {
+        if (a >= b) continue;
+        for (auto at = std::lower_bound(sides.begin(), sides.end(), Side{a, b, -1});
+             at != sides.end() && at->a == a && at->b == b; ++at) {
+          const Skin& sheet = skins_[ix(at->skin)];
+          const std::int32_t net = net_of_cell_net_[ix(cell_net)];
+          if (sheet.net == net)
+            unite(piece, static_cast<std::int32_t>(cell_pieces_.size()) + at->skin);
+          else
+            meet(sheet.net, net, sheet.face);
+        }
+      }
   }
 }
 

@@ -51,6 +51,7 @@ class NetPieces {
   void gather_nets(const NetContacts& cells);
   void gather_skins();
   void join_cells_to_skins(NetContacts& cells);
+  void join_cells_to_sheets(NetContacts& cells);
   void join_by_edges();
   void join_across_hollows();
   void take_cell_contacts(const NetContacts& cells);

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -35,10 +36,13 @@ struct Forecast {
 /// Before the last triangulation: what the study's height policy will make of the mesh that the outlines alone give. Triangles
 /// larger than the bound that the policy feeds back will be divided, each by its own area; heights follow.
 ///
-/// @param outlines       the first planar mesh.
-/// @param fed_back_m     longest edge of the second triangulation; empty = there is none.
+/// @param outlines    the planar mesh as it is.
+/// @param fed_back_m  longest edge of the second triangulation; empty = there is none.
+/// @param height_m    common height of the policy; empty = none.
+/// @param counts      sub-layers per slab where they are chosen already; empty = they follow from the heights to come.
 /// @cost O(triangles + regions x slabs).
-[[nodiscard]] Forecast forecast(const mesh::PlanarMesh& outlines, std::optional<double> fed_back_m, const model::Model& model,
+[[nodiscard]] Forecast forecast(const mesh::PlanarMesh& outlines, std::optional<double> fed_back_m,
+                                std::optional<double> height_m, std::span<const int> counts, const model::Model& model,
                                 const study::Study& study);
 
 /// Exact counts of a mesh. @cost O(planar edges x slabs).
