@@ -186,10 +186,10 @@ std::vector<LibraryMaterial> parse_materials(std::string_view json, std::string_
   std::set<std::string> names;
   for (const JsonValue entry : root.at("materials").as_array()) {
     library.push_back(read_material(entry));
-    std::vector<std::string> all = library.back().aliases;
-    all.push_back(library.back().name);
-    for (const std::string& name : all)
-      if (!names.insert(plain(name)).second) entry.fail(fmt::format("the name '{}' is taken by an earlier material", name));
+    std::set<std::string> own{plain(library.back().name)};
+    for (const std::string& alias : library.back().aliases) own.insert(plain(alias));
+    for (const std::string& name : own)
+      if (!names.insert(name).second) entry.fail(fmt::format("the name '{}' is taken by an earlier material", name));
   }
   return library;
 }
