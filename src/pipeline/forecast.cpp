@@ -8,6 +8,7 @@
 
 #include "pcbmesh/base/error.hpp"
 #include "pcbmesh/layering/choose_layers.hpp"
+#include "pcbmesh/layering/divide_layers.hpp"
 #include "pcbmesh/layering/prism_quality.hpp"
 
 namespace pcbmesh::pipeline {

@@ -163,11 +163,21 @@ MeshBoardResult mesh_board(const board::Board& board, const study::Study& study,
   progress.at("quality", 0);
   const layering::QualityStatistics quality = timed("quality", [&] { return layering::quality_statistics(prisms); });
 
-  return {std::move(prisms),        std::move(resolved),    graph.statistics,
-          std::move(graph.ledger),  planar.statistics,      heights,
-          height_m.value_or(0),     feedback_m.has_value(), options.longest_edge_nm * metres_per_nm,
-          std::move(layers.layers), std::move(match),       quality,
-          std::move(diagnostics),   std::move(times)};
+  return {std::move(prisms),
+          std::move(resolved),
+          graph.statistics,
+          std::move(graph.ledger),
+          planar.statistics,
+          heights,
+          height_m.value_or(0),
+          feedback_m.has_value(),
+          options.longest_edge_nm * metres_per_nm,
+          std::move(layers.layers),
+          std::move(match),
+          quality,
+          expected,
+          std::move(diagnostics),
+          std::move(times)};
 }
 
 }  // namespace pcbmesh::pipeline
