@@ -106,8 +106,7 @@ std::int32_t material_of(const Board& board, std::int32_t copper_layer) {
 }
 
 void keep_open(ModelParts& parts, Nm width) {
-  for (Nm* narrowest : {&parts.narrowest_feature_nm, &parts.narrowest_of_interest_nm})
-    *narrowest = *narrowest == 0 ? width : std::min(*narrowest, width);
+  parts.narrowest_feature_nm = parts.narrowest_feature_nm == 0 ? width : std::min(parts.narrowest_feature_nm, width);
 }
 
 void add_domain_and_board(const Footprint& footprint, const Stack& stack, ModelParts& parts) {
