@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -23,8 +24,8 @@ namespace {
 struct Options {
   std::string board, from, to, msh_version;
   std::vector<std::string> outputs;
-  bool ascii = false, no_check = false, json = false, dry_run = false, quality = false, explain = false, quiet = false,
-       warnings_as_errors = false;
+  bool ascii = false, no_check = false, json = false, dry_run = false, forecast = false, quality = false, explain = false,
+       quiet = false, warnings_as_errors = false;
   int threads = 2;
   std::shared_ptr<StudyOptions> study;
 };
@@ -65,10 +66,16 @@ int run(const Options& options) {
   const bool is_kept = !options.dry_run || options.json;
   if (is_kept || options.quality) mesh_run.quality = layering::quality_report(result.mesh);
   if (is_kept || options.explain) mesh_run.layers = layering::explain_layers(result.mesh, result.layers);
+  if (is_kept || options.forecast) mesh_run.measured = pipeline::measured(result.mesh);
   pipeline::OutputResult written;
   if (!options.dry_run) {
     written = pipeline::write_outputs(result, output, progress);
-    if (written.report) mesh_run.check = &*written.report;
+    if (written.report) {
+      const bool is_file = std::ranges::any_of(
+          output.meshes, [&](const auto& file) { return formats::find_mesh_format(file, output.format)->read != nullptr; });
+      pipeline::name_features(read.board, is_file ? metres_per(study.unit) : 1.0, *written.report);
+      mesh_run.check = &*written.report;
+    }
     const std::filesystem::path summary = pipeline::file_beside(output.meshes.front(), ".report.json");
     mesh_run.files = written.files;
     mesh_run.files.push_back(summary.string());
@@ -78,7 +85,8 @@ int run(const Options& options) {
   if (options.json)
     fmt::print("{}\n", report_json(mesh_run));
   else if (!options.quiet)
-    fmt::print("{}{}{}", report_text(mesh_run), options.explain ? explain_text(result, mesh_run.layers) : "",
+    fmt::print("{}{}{}{}", report_text(mesh_run), options.forecast ? forecast_text(mesh_run) : "",
+               options.explain ? explain_text(result, mesh_run.layers) : "",
                options.quality ? quality_text(mesh_run.quality) : "");
   return written.report && !written.report->passed() ? 1 : 0;
 }
@@ -101,6 +109,8 @@ Command add_mesh_command(CLI::App& program) {
   command->add_option("--to", options->to, "Format of the mesh (default: by ending)")->group(output);
   command->add_flag("--no-check", options->no_check, "Do not read the written mesh back and judge it")->group(output);
   command->add_flag("--dry-run", options->dry_run, "Do everything but write: exact counts")->group(output);
+  command->add_flag("--forecast", options->forecast, "Print what was forecast, the exact counts, unknowns and solver memory")
+      ->group(output);
   command->add_flag("--json", options->json, "Print the report as JSON")->group(output);
   command->add_flag("--quality", options->quality, "Print quality by layer, material and net, histograms and the worst prisms")
       ->group(output);

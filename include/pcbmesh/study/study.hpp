@@ -11,6 +11,7 @@
 
 #include "pcbmesh/base/units.hpp"
 #include "pcbmesh/geometry/path.hpp"
+#include "pcbmesh/study/fabrication.hpp"
 #include "pcbmesh/study/physics.hpp"
 
 namespace pcbmesh::study {
@@ -129,6 +130,7 @@ struct Study {
   std::array<Boundary, num_hull_sides> boundaries{};  ///< by HullSide
   std::optional<Sweep> sweep;
   Modes modes;
+  Fabrication fabrication;  ///< the board as it is really made
 
   bool operator==(const Study&) const;
 };
