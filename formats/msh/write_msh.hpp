@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <span>
@@ -46,6 +47,11 @@ void require_fits_22(const mesh::MeshSource& source, const std::filesystem::path
 /// Size of the file in bytes but for its few kB of headers; 0 for text, whose size nobody knows before.
 [[nodiscard]] std::uint64_t expected_bytes_41(const mesh::MeshSource& source, bool binary);
 [[nodiscard]] std::uint64_t expected_bytes_22(const mesh::MeshSource& source, bool binary);
+
+template <class Value>
+void store(char* to, Value value) {
+  std::memcpy(to, &value, sizeof value);
+}
 
 /// Faces and cells together.
 [[nodiscard]] std::int64_t num_elements(const mesh::MeshSource& source);

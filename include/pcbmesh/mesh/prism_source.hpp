@@ -52,8 +52,9 @@ class PrismSource final : public MeshSource {
   /// Calls visit(sub-layer, triangles) for a few triangles through all sub-layers, then the next few: the order of all prisms.
   template <class Visit>
   void visit_pieces(std::int32_t tag_index, Visit&& visit);
-  void visit_sublayer(std::int32_t sublayer, std::span<const std::array<std::int32_t, 3>> triangles,
-                      std::span<const std::int32_t> low_ranks, std::span<const std::int32_t> high_ranks, Rows& rows) const;
+  /// Prisms over triangles whose corners, as ranks in the levels below and above, stand in `low` and `high`, three each.
+  void visit_sublayer(std::int32_t sublayer, std::span<const std::int32_t> low, std::span<const std::int32_t> high,
+                      Rows& rows) const;
   /// Node ids of a level by vertex, minus the level's first id; empty if they are the vertices themselves.
   [[nodiscard]] std::span<const std::int32_t> ranks_of(std::int32_t level);
   [[nodiscard]] std::span<const std::int32_t> triangles_of(std::int32_t slab, std::int32_t tag_index);
