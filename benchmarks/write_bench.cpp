@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Streams 10 million prisms to a file and compares with a raw write() of as many bytes to the same folder.
-// write_bench [folder = /dev/shm] [millions of prisms = 10] [json]
+// write_bench [folder = /dev/shm] [millions of prisms = 10] [text | json] [part of a case's name]
 // With "json" one line of JSON per format follows, for write_peers.py.
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -219,12 +219,14 @@ void measure(const mesh::PrismMesh& mesh, const Case& what, const std::filesyste
 int main(int count, char** arguments) {
   const std::filesystem::path folder = count > 1 ? arguments[1] : "/dev/shm";
   const double millions = count > 2 ? std::strtod(arguments[2], nullptr) : 10;
+  const std::string wanted = count > 4 ? arguments[4] : "";
   const bool as_json = count > 3 && std::string(arguments[3]) == "json";
   for (const bool with_voids : {false, true}) {
     const mesh::PrismMesh mesh = synthetic_mesh(static_cast<std::int64_t>(millions * 1e6), with_voids);
     fmt::print("{} prisms{}, {} nodes, {} triangles in the plane; medians of {} pairs, folder {}\n", mesh.num_prisms(),
                with_voids ? " with voids" : "", mesh.num_nodes(), mesh.planar().num_triangles(), num_pairs, folder.string());
     for (const Case& what : cases()) {
+      if (what.name.find(wanted) == std::string::npos) continue;
       if (with_voids && what.options.compression != formats::Compression::none) continue;
       measure(mesh, what, folder, as_json && !with_voids);
     }

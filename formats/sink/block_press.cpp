@@ -15,7 +15,7 @@
 namespace pcbmesh::formats {
 namespace {
 
-constexpr std::size_t blocks_per_thread = 4;
+constexpr std::size_t blocks_per_thread = 2;
 
 }  // namespace
 

@@ -181,13 +181,18 @@ void Piece::put_points(double scale, ArraySink& out, Meter& meter) const {
 }
 
 template <class Integer>
-void Piece::put_corners_of(const Run& run, VtkWedge wedge, ArraySink& out, Meter& meter) const {
-  const auto order = node_order(source_.blocks()[run.block].kind, wedge);
+void Piece::put_corners_of(const Run& run, VtkWedge wedge, ArraySink& out, ArraySink* parametric, Meter& meter) const {
+  const mesh::ElementKind kind = source_.blocks()[run.block].kind;
+  const auto order = node_order(kind, wedge), parametric_order = node_order(kind, VtkWedge::parametric);
   visit(run, [&](std::span<const std::int64_t> nodes) {
+    const auto put = [&](auto number_of) {
+      put_rows<Integer>(nodes, order, out, number_of);
+      if (parametric != nullptr) put_rows<Integer>(nodes, parametric_order, *parametric, number_of);
+    };
     if (words_.empty())
-      put_rows<Integer>(nodes, order, out, [](std::int64_t node) { return node; });
+      put([](std::int64_t node) { return node; });
     else
-      put_rows<Integer>(nodes, order, out, [this](std::int64_t node) { return number_of(node); });
+      put([this](std::int64_t node) { return number_of(node); });
     meter.add(static_cast<std::int64_t>(nodes.size() / order.size()));
   });
 }
@@ -195,9 +200,18 @@ void Piece::put_corners_of(const Run& run, VtkWedge wedge, ArraySink& out, Meter
 void Piece::put_corners(VtkWedge wedge, std::size_t bytes, ArraySink& out, Meter& meter) const {
   for (const Run& run : runs_) {
     if (bytes == sizeof(std::int32_t))
-      put_corners_of<std::int32_t>(run, wedge, out, meter);
+      put_corners_of<std::int32_t>(run, wedge, out, nullptr, meter);
     else
-      put_corners_of<std::int64_t>(run, wedge, out, meter);
+      put_corners_of<std::int64_t>(run, wedge, out, nullptr, meter);
+  }
+}
+
+void Piece::put_corners_twice(VtkWedge wedge, std::size_t bytes, ArraySink& out, ArraySink& parametric, Meter& meter) const {
+  for (const Run& run : runs_) {
+    if (bytes == sizeof(std::int32_t))
+      put_corners_of<std::int32_t>(run, wedge, out, &parametric, meter);
+    else
+      put_corners_of<std::int64_t>(run, wedge, out, &parametric, meter);
   }
 }
 
@@ -268,13 +282,10 @@ void Piece::put_cell_array(CellArray array, ArraySink& out, Meter& meter) const 
       if (begin >= end) return;
       const auto wanted = values.subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin));
       char* to = out.room(wanted.size() * sizeof(std::int32_t));
-      for (const double value : wanted) {
-        if (array == CellArray::quality)
-          store(to, static_cast<float>(value));
-        else
-          store(to, static_cast<std::int32_t>(value));
-        to += sizeof(std::int32_t);
-      }
+      const auto put_as = [&]<class Value>(Value) {
+        for (std::size_t i = 0; i < wanted.size(); ++i) store(to + i * sizeof(Value), static_cast<Value>(wanted[i]));
+      };
+      array == CellArray::quality ? put_as(float{}) : put_as(std::int32_t{});
       out.advance(wanted.size() * sizeof(std::int32_t));
       meter.add(end - begin);
     });

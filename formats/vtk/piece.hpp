@@ -52,6 +52,8 @@ class Piece {
   void put_points(double scale, ArraySink& out, Meter& meter) const;
   /// @param bytes  of an integer, 4 or 8.
   void put_corners(VtkWedge wedge, std::size_t bytes, ArraySink& out, Meter& meter) const;
+  /// The same into two arrays in one go: in the chosen order, and in Gmsh's (VTK's of second order).
+  void put_corners_twice(VtkWedge wedge, std::size_t bytes, ArraySink& out, ArraySink& parametric, Meter& meter) const;
   /// Where each element's corners end in the array of all corners; `from_zero`: with a leading 0.
   void put_ends(bool from_zero, std::size_t bytes, ArraySink& out, Meter& meter) const;
   void put_types(ArraySink& out, Meter& meter) const;
@@ -65,7 +67,7 @@ class Piece {
   [[nodiscard]] bool has(std::int64_t node) const;
   [[nodiscard]] std::int64_t number_of(std::int64_t node) const;
   template <class Integer>
-  void put_corners_of(const Run& run, VtkWedge wedge, ArraySink& out, Meter& meter) const;
+  void put_corners_of(const Run& run, VtkWedge wedge, ArraySink& out, ArraySink* parametric, Meter& meter) const;
   template <class Integer>
   void put_ends_of(bool from_zero, ArraySink& out, Meter& meter) const;
   [[nodiscard]] std::int32_t value_of(const Run& run, CellArray array) const;

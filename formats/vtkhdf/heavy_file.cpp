@@ -21,6 +21,17 @@ constexpr std::array<std::string_view, 12> xdmf_names{"Triangle",        "Quadri
 /// Codes of a mixed topology.
 constexpr std::array<std::int32_t, 12> xdmf_codes{4, 5, 6, 7, 8, 9, 36, 37, 35, 38, 40, 41};
 
+std::vector<ElementKind> kinds_of(const mesh::MeshSource& source, int dimension) {
+  std::vector<ElementKind> kinds;
+  for (const mesh::ElementBlock& block : source.blocks())
+    if (mesh::dimension_of(block.kind) == dimension && std::ranges::count(kinds, block.kind) == 0) kinds.push_back(block.kind);
+  return kinds;
+}
+
+std::string path_of(ElementKind kind) {
+  return "/mesh/" + std::string(mesh::name_of(kind));
+}
+
 class Writer {
  public:
   Writer(mesh::MeshSource& source, const std::filesystem::path& file, const WriteMeshOptions& options, const Progress& progress)
@@ -46,7 +57,7 @@ class Writer {
   void write_cells(HeavyFile& out);
   void write_faces(HeavyFile& out);
   void write_mixed_faces(const vtk::Piece& piece, const std::string& path, HeavyGrid& grid);
-  HeavyGrid write_kind(const vtk::Piece& piece, ElementKind kind, const std::string& path);
+  void write_rows(const vtk::Piece& piece, ElementKind kind);
 
   mesh::MeshSource& source_;
   const WriteMeshOptions& options_;
@@ -84,7 +95,14 @@ void Writer::write_vtkhdf() {
   cells_.put_points(source_.unit_m() / metres_per(options_.unit), *points, meter_);
   points->finish();
   const auto corners = file_.begin("/VTKHDF/Connectivity", index_type(), cells_.num_corners());
-  cells_.put_corners(options_.vtk_wedge, index_bytes_, *corners, meter_);
+  if (const std::vector<ElementKind> kinds = kinds_of(source_, 3); kinds.size() == 1) {
+    // Both arrays in one go: the rows are made once.
+    const auto rows = file_.begin(path_of(kinds.front()), index_type(), cells_.num_elements(), mesh::nodes_of(kinds.front()));
+    cells_.put_corners_twice(options_.vtk_wedge, index_bytes_, *corners, *rows, meter_);
+    rows->finish();
+  } else {
+    cells_.put_corners(options_.vtk_wedge, index_bytes_, *corners, meter_);
+  }
   corners->finish();
   const auto ends = file_.begin("/VTKHDF/Offsets", index_type(), cells_.num_elements() + 1);
   cells_.put_ends(true, index_bytes_, *ends, meter_);
@@ -115,24 +133,19 @@ void Writer::write_tables() {
   file_.put_strings(field + "nets", source_.nets());
 }
 
-HeavyGrid Writer::write_kind(const vtk::Piece& piece, ElementKind kind, const std::string& path) {
-  const std::int64_t width = mesh::nodes_of(kind);
-  const auto out = file_.begin(path, index_type(), piece.num_elements(), width);
-  piece.put_corners(VtkWedge::parametric, index_bytes_, *out, meter_);
-  out->finish();
+HeavyGrid grid_of(const vtk::Piece& piece, ElementKind kind) {
   return {std::string(xdmf_names[static_cast<std::size_t>(kind)]),
-          path,
+          path_of(kind),
           piece.num_elements(),
-          width,
+          mesh::nodes_of(kind),
           piece.num_corners(),
           piece.cell_arrays()};
 }
 
-std::vector<ElementKind> kinds_of(const mesh::MeshSource& source, int dimension) {
-  std::vector<ElementKind> kinds;
-  for (const mesh::ElementBlock& block : source.blocks())
-    if (mesh::dimension_of(block.kind) == dimension && std::ranges::count(kinds, block.kind) == 0) kinds.push_back(block.kind);
-  return kinds;
+void Writer::write_rows(const vtk::Piece& piece, ElementKind kind) {
+  const auto out = file_.begin(path_of(kind), index_type(), piece.num_elements(), mesh::nodes_of(kind));
+  piece.put_corners(VtkWedge::parametric, index_bytes_, *out, meter_);
+  out->finish();
 }
 
 void Writer::write_cells(HeavyFile& out) {
@@ -140,8 +153,9 @@ void Writer::write_cells(HeavyFile& out) {
   for (const ElementKind kind : kinds) {
     const vtk::Piece piece(source_, vtk::runs_of(source_, [&](const mesh::ElementBlock& b) { return b.kind == kind; }), true,
                            progress_);
-    const std::string path = "/mesh/" + std::string(mesh::name_of(kind));
-    out.cells.push_back(write_kind(piece, kind, path));
+    const std::string path = path_of(kind);
+    if (kinds.size() > 1) write_rows(piece, kind);
+    out.cells.push_back(grid_of(piece, kind));
     for (const vtk::CellArray array : piece.cell_arrays()) {
       const std::string name(vtk::name_of(array));
       if (kinds.size() == 1)
@@ -181,18 +195,20 @@ void Writer::write_faces(HeavyFile& out) {
   const std::vector<ElementKind> kinds = kinds_of(source_, 2);
   if (kinds.empty()) return;
   HeavyGrid grid;
-  if (kinds.size() == 1)
-    grid = write_kind(piece, kinds.front(), "/mesh/" + std::string(mesh::name_of(kinds.front())));
-  else
+  if (kinds.size() == 1) {
+    write_rows(piece, kinds.front());
+    grid = grid_of(piece, kinds.front());
+  } else {
     write_mixed_faces(piece, "/mesh/faces", grid);
+  }
   for (const vtk::CellArray array : grid.arrays) write_array(piece, array, grid.path + "_" + std::string(vtk::name_of(array)));
   out.faces.push_back(std::move(grid));
 }
 
 HeavyFile Writer::write() {
+  file_.make_group("/mesh");
   write_vtkhdf();
   write_tables();
-  file_.make_group("/mesh");
   file_.put_attribute("/mesh", "unit_m", metres_per(options_.unit));
   file_.put_attribute("/mesh", "vtk_wedge", name_of(options_.vtk_wedge));
   file_.link("/VTKHDF/Points", "/mesh/points");

@@ -228,21 +228,25 @@ void PrismSource::visit_pieces(std::int32_t tag_index, Visit&& visit) {
 
 void PrismSource::visit_wedges(std::int32_t tag_index, Rows& rows) {
   const auto corners = mesh_.planar().triangles();
-  std::vector<std::int32_t> bottom, inside, top;
+  std::array<std::vector<std::int32_t>, 3> tables;
   visit_pieces(tag_index, [&](std::int32_t slab, std::span<const std::int32_t> few) {
     const std::int32_t begin = mesh_.plan().first_sublayer(slab), end = mesh_.plan().first_sublayer(slab + 1);
     // Corners are looked up once per slab; every sub-layer then adds its first ids to them. Levels strictly inside a slab hold
-    // the same vertices.
+    // the same vertices, and levels without gaps number their nodes like the plane does.
+    std::span<const std::int32_t> known_ranks, known;
     const auto look_up = [&](std::int32_t level, std::vector<std::int32_t>& out) {
       const std::span<const std::int32_t> ranks = ranks_of(level);
+      if (!known.empty() && ranks.empty() && known_ranks.empty()) return known;
       out.resize(3 * few.size());
       std::int32_t* to = out.data();
       for (const std::int32_t t : few)
         for (const std::int32_t v : corners[index(t)]) *to++ = ranks.empty() ? v : ranks[index(v)];
+      known_ranks = ranks;
+      return known = out;
     };
-    look_up(begin, bottom);
-    look_up(end, top);
-    if (end - begin > 1) look_up(begin + 1, inside);
+    const std::span<const std::int32_t> bottom = look_up(begin, tables[0]);
+    const std::span<const std::int32_t> inside = end - begin > 1 ? look_up(begin + 1, tables[1]) : bottom;
+    const std::span<const std::int32_t> top = look_up(end, tables[2]);
     for (std::int32_t k = begin; k < end; ++k)
       visit_sublayer(k, k == begin ? bottom : inside, k + 1 == end ? top : inside, rows);
   });
@@ -264,21 +268,28 @@ void PrismSource::visit_sublayer(std::int32_t sublayer, std::span<const std::int
   }
 }
 
+void PrismSource::survey_shapes() {
+  const PlanarMesh& planar = mesh_.planar();
+  shapes_.reserve(index(planar.num_triangles()));
+  for (std::int32_t t = 0; t < planar.num_triangles(); ++t) {
+    const std::array<double, 3> squared = planar.squared_edges_m2(t);
+    shapes_.push_back({planar.area_m2(t), squared[0] + squared[1] + squared[2]});
+  }
+}
+
 void PrismSource::visit_field(std::size_t block, CellField field, const VisitValues& visit) {
   PCBMESH_ASSERT(has_field(field) && dimension_of(blocks_.at(block).kind) == 3);
   const PlanarMesh& planar = mesh_.planar();
   std::vector<double> values;
-  std::vector<std::array<double, 2>> shapes;  // area and sum of squared edges: the same through all sub-layers
+  if (field == CellField::quality && shapes_.empty()) survey_shapes();
+  std::vector<std::array<double, 2>> shapes;
   visit_pieces(tag_index_of(blocks_[block]), [&](std::int32_t slab, std::span<const std::int32_t> few) {
     values.resize(few.size());
     if (field == CellField::region)
       std::ranges::transform(few, values.begin(), [&](std::int32_t t) { return planar.regions()[index(t)]; });
     shapes.clear();
     if (field == CellField::quality)
-      for (const std::int32_t t : few) {
-        const std::array<double, 3> squared = planar.squared_edges_m2(t);
-        shapes.push_back({planar.area_m2(t), squared[0] + squared[1] + squared[2]});
-      }
+      for (const std::int32_t t : few) shapes.push_back(shapes_[index(t)]);
     double last_height = -1;
     for (std::int32_t k = mesh_.plan().first_sublayer(slab); k < mesh_.plan().first_sublayer(slab + 1); ++k) {
       const double height = mesh_.plan().height_m(k);

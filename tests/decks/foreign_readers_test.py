@@ -119,12 +119,12 @@ def check_grid(name, tags, grid, order=LEGACY):
 
 
 def check_validity(name, grid):
-    """A look at each hundredth wedge: the validator prints whatever it does not like."""
-    types, wrong = vtk_to_numpy(grid.GetCellTypesArray()), 0
-    wedges = numpy.flatnonzero(types == 13)[::100]
-    for i in wedges:
-        wrong += vtk.vtkCellValidator.Check(grid.GetCell(int(i)), 1e-6) != 0
-    expect(len(wedges) > 10 and wrong == 0, f"{name}: the cell validator refuses {wrong} of {len(wedges)} wedges")
+    """Bit 0x20 of VTK's cell validator, faces inside out, at each hundredth wedge. Its convexity bit is not asked: it is set for
+    some prisms over skinny triangles that are convex."""
+    types = vtk_to_numpy(grid.GetCellTypesArray())
+    states = numpy.array([int(vtk.vtkCellValidator.Check(grid.GetCell(int(i)), 1e-6)) for i in numpy.flatnonzero(types == 13)[::100]])
+    turned = (states & 0x20 != 0).sum()
+    expect(len(states) > 10 and turned == 0, f"{name}: the cell validator finds {turned} of {len(states)} wedges inside out")
 
 
 def check_meshio(path, tags, has_wedges=True):
@@ -232,6 +232,14 @@ def check_native(folder):
             expect(done.returncode == 0 and "DATASET \"triangles\"" in done.stdout, f"{stem}.pcbmesh: h5dump says {done.stderr}")
 
 
+def without_times(text):
+    def strip(value):
+        if isinstance(value, dict):
+            return {k: strip(v) for k, v in value.items() if k != "cpu_s"}
+        return [strip(v) for v in value] if isinstance(value, list) else value
+    return strip(json.loads(text))
+
+
 def check_reading_meshio(folder):
     """What meshio writes, the program reads: the same verdict as on its own file."""
     make(folder, "-o", "own.vtu", "--unit", "um", "--faces")
@@ -241,18 +249,17 @@ def check_reading_meshio(folder):
     mesh.cell_data = {"gmsh:physical": numpy.split(tags.astype("int32"), counts)}
     writers = {"meshio_zlib.vtu": {}, "meshio_plain.vtu": {"compression": None}, "meshio_text.vtu": {"binary": False},
                "meshio_lzma.vtu": {"compression": "lzma"}, "meshio.xdmf": {}, "meshio_text.xdmf": {"data_format": "XML"}}
-    verdict = run("check", folder / "own.vtu", "--json")
+    verdict = without_times(run("check", folder / "own.vtu", "--json", "--no-tags").stdout)
+    expect(verdict["num_cells"] > 1000 and verdict["passed"], "own.vtu does not pass")
     for name, options in writers.items():
         meshio.write(str(folder / name), mesh, **options)
-        done = run("check", folder / name, "--json")
-        same = done.returncode == verdict.returncode and done.stdout.replace(name, "own.vtu") == verdict.stdout
-        if not same:
-            a, b = (json.loads(x.stdout) if x.stdout else {"error": x.stderr} for x in (verdict, done))
-            for report in (a, b):
-                for key in ("mesh", "file", "source"):
-                    report.pop(key, None)
-            same = a == b
-        expect(same, f"{name}: the verdict differs from that on our own file: {done.stderr[:300] or done.stdout[:300]}")
+        done = run("check", folder / name, "--json", "--no-tags")
+        found = without_times(done.stdout or "{}")
+        if name == "meshio_text.vtu":  # its coordinates have twelve digits
+            found, wanted = ({k: report.get(k) for k in ("passed", "num_nodes", "num_cells", "num_faces")} for report in (found, verdict))
+        else:
+            wanted = verdict
+        expect(found == wanted, f"{name}: another verdict than on our own file: {done.stderr[:300]}")
         print(f"{name}: read, exit {done.returncode}")
 
 

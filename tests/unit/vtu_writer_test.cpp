@@ -188,13 +188,15 @@ TEST(VtuWriter, BlocksAreNamedLikeTheGroupsAndHoldTheirElements) {
 
 TEST(VtuReader, AFileCutAnywhereIsRefusedWithAPlace) {
   mesh::PrismSource source(mesh::PrismMesh::from_parts(testing::plain_parts(2, 1, 1)));
-  for (const Variant& variant : variants()) {
+  const std::vector<Variant> all = variants();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Variant& variant = all[i];
     const Folder folder;
     write_mesh(source, folder / "a.vtu", variant.options);
     const std::string whole = contents(folder / "a.vtu");
     // The last line end is nobody's loss.
     const std::size_t last = whole.size() - 1;
-    for (std::size_t size = 0; size < last; size += 1 + size % 3) {
+    for (std::size_t size = 0; size < last; size += i == 0 ? 1 : 23) {
       testing::create(folder / "a.vtu", whole.substr(0, size));
       const Error error = error_of([&] { static_cast<void>(read_mesh(folder / "a.vtu")); });
       ASSERT_TRUE(error.code() == ErrorCode::file_truncated || error.code() == ErrorCode::file_syntax) << size << error.what();
@@ -210,7 +212,7 @@ TEST(VtuReader, DamagedBytesNeverCrashNorEatMemory) {
     const Folder folder;
     write_mesh(source, folder / "a.vtu", variant.options);
     const std::string whole = contents(folder / "a.vtu");
-    for (int run = 0; run < 300; ++run) {
+    for (int run = 0; run < 100; ++run) {
       std::string bytes = whole;
       for (int flips = 1 + static_cast<int>(random() % 3); flips > 0; --flips)
         bytes[random() % bytes.size()] = static_cast<char>(random());

@@ -18,7 +18,7 @@ using PrismQuality = std::function<double(double area_m2, double beta_m2, double
 /// all its sub-layers at a time.
 ///
 /// @cost memory O(regions x slabs) + triangle lists of slabs: at most `cache_bytes`, but always room for two; with voids
-/// also 12 bytes per vertex of the plane.
+/// also 12 bytes per vertex of the plane; once the quality is asked for 16 bytes per triangle.
 class PrismSource final : public MeshSource {
  public:
   /// @param quality  null: no field `quality`.
@@ -44,6 +44,7 @@ class PrismSource final : public MeshSource {
   class Rows;
   void survey_volumes();
   void survey_faces();
+  void survey_shapes();
   /// Index into face_tags or volume_tags of a block.
   [[nodiscard]] std::int32_t tag_index_of(const ElementBlock& block) const;
   void visit_caps(std::int32_t tag_index, Rows& rows) const;
@@ -63,7 +64,8 @@ class PrismSource final : public MeshSource {
   PrismQuality quality_;
   std::vector<std::vector<std::int32_t>> slabs_of_tag_;
   std::vector<SlabGroups> cache_;
-  std::array<LevelRanks, 3> level_ranks_;  ///< bottom, inside and top of the slab that is being written
+  std::array<LevelRanks, 3> level_ranks_;      ///< bottom, inside and top of the slab that is being written
+  std::vector<std::array<double, 2>> shapes_;  ///< area and sum of squared edges by triangle, once the quality is asked for
   std::size_t max_cached_ = 2;
   std::uint64_t clock_ = 0;
 };
