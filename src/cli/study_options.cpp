@@ -4,24 +4,10 @@
 #include <fmt/format.h>
 
 #include "pcbmesh/base/error.hpp"
+#include "src/cli/physics_options.hpp"
 
 namespace pcbmesh::cli {
 namespace {
-
-/// Splits at commas; a backslash keeps the next character, for names with commas.
-std::vector<std::string> split(const std::string& text) {
-  std::vector<std::string> parts(1);
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] == '\\' && i + 1 < text.size())
-      parts.back() += text[++i];
-    else if (text[i] == ',')
-      parts.emplace_back();
-    else
-      parts.back() += text[i];
-  }
-  std::erase(parts, "");
-  return parts;
-}
 
 /// "NET", "NET@LAYER" or "@LAYER".
 study::ConductorRule conductor_rule(const std::string& text, study::ConductorMode mode) {
@@ -31,7 +17,7 @@ study::ConductorRule conductor_rule(const std::string& text, study::ConductorMod
 }
 
 geometry::Box parse_box(const std::string& text) {
-  const std::vector<std::string> parts = split(text);
+  const std::vector<std::string> parts = split_at_commas(text);
   if (parts.size() != 4)
     throw Error(ErrorCode::usage,
                 fmt::format("--region '{}': expected four lengths xmin,ymin,xmax,ymax, e.g. 10mm,5mm,30mm,20mm", text));
@@ -53,7 +39,9 @@ std::shared_ptr<StudyOptions> add_study_options(CLI::App& command) {
   command.add_option("--margin", o->margin, "Growth of the nets' bounding box (default 2mm)")->group(region);
   command.add_option("--region", o->region, "Mesh a box: xmin,ymin,xmax,ymax; y is up, as inspect prints it")->group(region);
   constexpr const char* domain = "Conductors and air";
-  command.add_option("--conductors", o->conductors, "solid (copper is meshed) or hollow (its skin is tagged surface|net)")
+  command
+      .add_option("--conductors", o->conductors,
+                  "solid (copper is meshed), hollow (its skin is tagged surface|net) or sheet (no thickness, tagged sheet|net)")
       ->group(domain);
   command.add_option("--hollow", o->hollow, "Make NET, NET@LAYER or @LAYER hollow; repeatable")
       ->allow_extra_args(false)
@@ -61,10 +49,14 @@ std::shared_ptr<StudyOptions> add_study_options(CLI::App& command) {
   command.add_option("--solid", o->solid, "Make NET, NET@LAYER or @LAYER solid; repeatable")
       ->allow_extra_args(false)
       ->group(domain);
+  command.add_option("--sheet", o->sheet, "Make NET, NET@LAYER or @LAYER a sheet; repeatable")
+      ->allow_extra_args(false)
+      ->group(domain);
   command.add_option("--air", o->air, "Air above and below (default 1mm; 0 = none)")->group(domain);
   command.add_option("--air-above", o->air_above, "Air above the board")->group(domain);
   command.add_option("--air-below", o->air_below, "Air below the board")->group(domain);
   command.add_option("--air-around", o->air_around, "Air beside the whole board (default 0)")->group(domain);
+  add_physics_options(command, *o);
   constexpr const char* sizes = "Sizes and heights";
   command
       .add_option("--frequency", o->frequency, "Highest frequency, e.g. 10GHz: edges at most a third of the local wavelength")
@@ -78,9 +70,29 @@ std::shared_ptr<StudyOptions> add_study_options(CLI::App& command) {
   command.add_flag("--smooth", o->smooth, "Smooth the triangles; angle bound, size bound and outlines hold")->group(sizes);
   command
       .add_option("--policy", o->policy,
-                  "Common prism height: none, basic, average, maximum, minimum, thinnest_layer, or the paper's case 1 to 5")
+                  "Common prism height: none, basic, average, maximum, minimum, thinnest_layer (the paper's cases 1 to 5), "
+                  "weighted (6), matched (7: longest edge and counts for a target or a budget)")
+      ->group(sizes);
+  command.add_option("--target-quality", o->target_quality, "Policy matched: mean and by volume at least this, fewest prisms")
+      ->group(sizes);
+  command.add_option("--budget-prisms", o->budget_prisms, "Policy matched: at most so many prisms")->group(sizes);
+  command.add_option("--budget-unknowns", o->budget_unknowns, "Policy matched: at most so many edges (lowest edge elements)")
       ->group(sizes);
   command.add_option("--sublayers", o->sublayers, "Cutting of layers: floor, round, ceil, none, optimal, best_mean")
+      ->group(sizes);
+  command.add_option("--elements-per-wavelength", o->elements_per_wavelength, "Edges and heights, local material (default 3)")
+      ->group(sizes);
+  command.add_option("--elements-per-dielectric", o->elements_per_dielectric, "At least so many sub-layers in a dielectric")
+      ->group(sizes);
+  command
+      .add_option("--skin-depth-layers", o->skin_depth_layers,
+                  "So many sub-layers in the first skin depth of meshed copper, growing from its faces, outside too")
+      ->group(sizes);
+  command
+      .add_option("--height-growth", o->height_growth,
+                  "Largest ratio of neighbouring sub-layers, at least 1.1 (default: no limit; 2 with --skin-depth-layers)")
+      ->group(sizes);
+  command.add_flag("--paper-compat", o->paper_compat, "The rules the tables of Ye and Daniels imply, slips included")
       ->group(sizes);
   command.add_option("--tolerance", o->tolerance, "Snapping tolerance: auto or a length (default auto)")->group(sizes);
   command.add_option("--arc-sagitta", o->arc_sagitta, "Largest distance of chord and arc (default 5um)")->group(sizes);
@@ -94,7 +106,7 @@ study::Study study_from(const StudyOptions& o) {
   if (!o.nets.empty() && !o.region.empty()) throw Error(ErrorCode::usage, "--nets and --region exclude each other; give one");
   if (!o.nets.empty()) {
     s.region = study::RegionKind::nets;
-    s.nets = split(o.nets);
+    s.nets = split_at_commas(o.nets);
   }
   if (!o.margin.empty()) s.margin = parse_length(o.margin);
   if (!o.region.empty()) {
@@ -104,6 +116,7 @@ study::Study study_from(const StudyOptions& o) {
   if (!o.conductors.empty()) s.conductors = study::parse_conductor_mode(o.conductors);
   for (const std::string& text : o.hollow) s.conductor_rules.push_back(conductor_rule(text, study::ConductorMode::hollow));
   for (const std::string& text : o.solid) s.conductor_rules.push_back(conductor_rule(text, study::ConductorMode::solid));
+  for (const std::string& text : o.sheet) s.conductor_rules.push_back(conductor_rule(text, study::ConductorMode::sheet));
   if (!o.air.empty()) s.air_above = s.air_below = parse_length(o.air);
   if (!o.air_above.empty()) s.air_above = parse_length(o.air_above);
   if (!o.air_below.empty()) s.air_below = parse_length(o.air_below);
@@ -117,17 +130,27 @@ study::Study study_from(const StudyOptions& o) {
   if (o.smooth) s.smooth = true;
   if (!o.policy.empty()) s.policy = study::parse_height_policy(o.policy);
   if (!o.sublayers.empty()) s.sublayers = study::parse_sublayer_rule(o.sublayers);
+  const auto count = [](const char* flag, double value) {
+    if (!(value >= 1 && value < 1e15)) throw Error(ErrorCode::usage, fmt::format("{} {} is no count", flag, value));
+    return static_cast<std::int64_t>(value);
+  };
+  study::HeightBounds& bounds = s.height_bounds;
+  if (o.elements_per_wavelength) bounds.elements_per_wavelength = *o.elements_per_wavelength;
+  if (o.elements_per_dielectric) bounds.elements_per_dielectric = o.elements_per_dielectric;
+  if (o.skin_depth_layers) bounds.skin_depth_layers = o.skin_depth_layers;
+  if (o.height_growth) bounds.height_growth = o.height_growth;
+  if (o.target_quality) s.match.target_quality = o.target_quality;
+  if (o.budget_prisms) s.match.budget_prisms = count("--budget-prisms", *o.budget_prisms);
+  if (o.budget_unknowns) s.match.budget_unknowns = count("--budget-unknowns", *o.budget_unknowns);
+  if (o.paper_compat) s.paper_compat = true;
   if (o.tolerance == "auto")
     s.tolerance.reset();
   else if (!o.tolerance.empty())
     s.tolerance = parse_length(o.tolerance);
   if (!o.arc_sagitta.empty()) s.arcs.sagitta_nm = parse_length(o.arc_sagitta);
   if (!o.unit.empty()) s.unit = parse_length_unit(o.unit);
-  if (o.max_prisms != 0) {
-    if (!(o.max_prisms >= 1 && o.max_prisms < 1e15))
-      throw Error(ErrorCode::usage, fmt::format("--max-prisms {} is no count", o.max_prisms));
-    s.max_prisms = static_cast<std::int64_t>(o.max_prisms);
-  }
+  if (o.max_prisms != 0) s.max_prisms = count("--max-prisms", o.max_prisms);
+  take_physics_options(o, s);
   study::check(s);
   return s;
 }

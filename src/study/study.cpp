@@ -8,58 +8,84 @@
 
 #include "pcbmesh/base/error.hpp"
 #include "src/study/choices.hpp"
+#include "src/study/faults.hpp"
 
 namespace pcbmesh::study {
 namespace {
 
-[[noreturn]] void refuse(std::string_view field, std::string_view text) {
-  throw Error(ErrorCode::study_invalid, fmt::format("{}: {}", field, text));
-}
-
-void require_length(std::string_view field, Nm value, Nm least, Nm most) {
-  if (value < least || value > most)
-    refuse(field, fmt::format("{} is out of range; expected {} to {}", format_length(value), format_length(least),
-                              format_length(most)));
-}
-
-void check_region(const Study& study) {
+void check_region(const Study& study, FaultList& faults) {
   if (study.region == RegionKind::nets && study.nets.empty())
-    refuse("/region/nets", "a region by nets needs at least one net name");
+    faults.add("/region/nets", "a region by nets needs at least one net name");
   for (const std::string& net : study.nets)
-    if (net.empty()) refuse("/region/nets", "a net name is empty");
+    if (net.empty()) faults.add("/region/nets", "a net name is empty");
   for (std::size_t i = 0; i < study.nets.size(); ++i)
     if (std::find(study.nets.begin(), study.nets.begin() + static_cast<std::ptrdiff_t>(i), study.nets[i]) !=
         study.nets.begin() + static_cast<std::ptrdiff_t>(i))
-      refuse("/region/nets", fmt::format("net '{}' is named twice", study.nets[i]));
-  require_length("/region/margin", study.margin, 0, max_coordinate_nm);
-  if (study.region == RegionKind::box && !study.box) refuse("/region/box", "a region by box needs the box");
+      faults.add("/region/nets", fmt::format("net '{}' is named twice", study.nets[i]));
+  faults.require_length("/region/margin", study.margin, 0, max_coordinate_nm);
+  if (study.region == RegionKind::box && !study.box) faults.add("/region/box", "a region by box needs the box");
   if (!study.box) return;
   const geometry::Box& box = *study.box;
   if (box.max.x <= box.min.x || box.max.y <= box.min.y)
-    refuse("/region/box", "the box is empty: max must lie above and to the right of min");
+    faults.add("/region/box", "the box is empty: max must lie above and to the right of min");
   for (Nm value : {box.min.x, box.min.y, box.max.x, box.max.y})
-    require_length("/region/box", value, -max_coordinate_nm, max_coordinate_nm);
+    faults.require_length("/region/box", value, -max_coordinate_nm, max_coordinate_nm);
 }
 
-void check_mesh(const Study& study) {
-  constexpr double highest_hz = 1e13;
-  if (study.frequency_hz && !(*study.frequency_hz > 0 && *study.frequency_hz <= highest_hz))
-    refuse("/mesh/frequency", fmt::format("{} Hz is out of range; expected above 0 and up to 10 THz", *study.frequency_hz));
-  if (study.longest_edge) require_length("/mesh/longest_edge", *study.longest_edge, 1, max_coordinate_nm);
-  if (study.edge_at_copper) require_length("/mesh/edge_at_copper", *study.edge_at_copper, 1, max_coordinate_nm);
+void check_heights(const Study& study, FaultList& faults) {
+  const auto require_between = [&](std::string_view field, double value, double least, double most) {
+    if (!(value >= least && value <= most))
+      faults.add(field, fmt::format("{} is out of range; expected {} to {}", value, least, most));
+  };
+  const HeightBounds& bounds = study.height_bounds;
+  require_between("/mesh/elements_per_wavelength", bounds.elements_per_wavelength, 1, 1000);
+  if (bounds.elements_per_dielectric)
+    require_between("/mesh/elements_per_dielectric", *bounds.elements_per_dielectric, 1, 1000);
+  if (bounds.skin_depth_layers) require_between("/mesh/skin_depth_layers", *bounds.skin_depth_layers, 1, 20);
+  if (bounds.skin_depth_layers && !highest_frequency_hz(study))
+    faults.add("/mesh/skin_depth_layers",
+               "the skin depth hangs on the frequency, and none is given; give one (--frequency 10GHz)");
+  if (bounds.height_growth) require_between("/mesh/height_growth", *bounds.height_growth, 1.1, 100);
+  const MatchGoal& goal = study.match;
+  if (goal.target_quality) require_between("/mesh/target_quality", *goal.target_quality, 0.01, 1.02);
+  const auto require_budget = [&](std::string_view field, const std::optional<std::int64_t>& budget) {
+    if (budget && *budget < 1) faults.add(field, fmt::format("{} is out of range; expected at least 1", *budget));
+  };
+  require_budget("/mesh/budget_prisms", goal.budget_prisms);
+  require_budget("/mesh/budget_unknowns", goal.budget_unknowns);
+  const bool has_goal = goal != MatchGoal{};
+  if (has_goal && study.policy != HeightPolicy::matched)
+    faults.add("/mesh/height_policy",
+               fmt::format("a target quality or a budget is for policy matched, but the policy is {}; take matched (--policy "
+                           "matched), or leave the goal out",
+                           name_of(study.policy)));
+  if (!study.paper_compat) return;
+  const bool is_case = study.policy >= HeightPolicy::basic && study.policy <= HeightPolicy::thinnest_layer;
+  if (!is_case || study.seed != TriangleSeed::delaunay || study.smooth || study.edge_at_copper ||
+      bounds.elements_per_dielectric || bounds.skin_depth_layers || bounds.height_growth)
+    faults.add("/mesh/paper_compat",
+               "the paper knows its five policies, plain Delaunay refinement and no bounds on heights; leave the rest out");
+}
+
+void check_mesh(const Study& study, FaultList& faults) {
+  if (study.frequency_hz && !is_frequency(*study.frequency_hz))
+    faults.add("/mesh/frequency", fmt::format("{} Hz is out of range; expected above 0 and up to 10 THz", *study.frequency_hz));
+  if (study.longest_edge) faults.require_length("/mesh/longest_edge", *study.longest_edge, 1, max_coordinate_nm);
+  if (study.edge_at_copper) faults.require_length("/mesh/edge_at_copper", *study.edge_at_copper, 1, max_coordinate_nm);
   if (study.edge_at_copper && study.longest_edge && *study.edge_at_copper > *study.longest_edge)
-    refuse("/mesh/edge_at_copper", fmt::format("{} is longer than the longest edge, {}", format_length(*study.edge_at_copper),
-                                               format_length(*study.longest_edge)));
+    faults.add("/mesh/edge_at_copper", fmt::format("{} is longer than the longest edge, {}",
+                                                   format_length(*study.edge_at_copper), format_length(*study.longest_edge)));
   if (!(study.min_angle_deg > 0 && study.min_angle_deg <= 28.6))
-    refuse("/mesh/min_angle_deg",
-           fmt::format("{} is out of range; expected above 0 and up to 28.6 degrees (refinement is sure to end up to 20.7)",
-                       study.min_angle_deg));
+    faults.add("/mesh/min_angle_deg",
+               fmt::format("{} is out of range; expected above 0 and up to 28.6 degrees (refinement is sure to end up to 20.7)",
+                           study.min_angle_deg));
   if (!(study.growth > 0 && study.growth <= 10))
-    refuse("/mesh/growth", fmt::format("{} is out of range; expected above 0 and up to 10", study.growth));
+    faults.add("/mesh/growth", fmt::format("{} is out of range; expected above 0 and up to 10", study.growth));
   if (study.edge_at_copper && study.seed == TriangleSeed::hex)
-    refuse("/mesh/seed",
-           "the hexagonal lattice has edges of one length, but edge_at_copper asks for graded ones; leave one out");
-  if (study.tolerance) require_length("/mesh/tolerance", *study.tolerance, 1, nm_per_mm);
+    faults.add("/mesh/seed",
+               "the hexagonal lattice has edges of one length, but edge_at_copper asks for graded ones; leave one out");
+  check_heights(study, faults);
+  if (study.tolerance) faults.require_length("/mesh/tolerance", *study.tolerance, 1, nm_per_mm);
 }
 
 }  // namespace
@@ -69,6 +95,9 @@ std::string_view name_of(RegionKind value) {
 }
 std::string_view name_of(ConductorMode value) {
   return name_in(conductor_names, value);
+}
+std::string_view name_of(ConductorSurface value) {
+  return name_in(surface_names, value);
 }
 std::string_view name_of(HeightPolicy value) {
   return name_in(policy_names, value);
@@ -81,9 +110,7 @@ std::string_view name_of(TriangleSeed value) {
 }
 
 HeightPolicy parse_height_policy(std::string_view text) {
-  constexpr std::array<std::string_view, 5> paper_cases{"1", "2", "3", "4", "5"};
-  for (std::size_t i = 0; i < paper_cases.size(); ++i)
-    if (text == paper_cases[i]) return policy_names[i + 1].value;
+  if (text.size() == 1 && text[0] >= '1' && text[0] <= '7') return policy_names[static_cast<std::size_t>(text[0] - '0')].value;
   return value_in(policy_names, text, "height policy");
 }
 SublayerRule parse_sublayer_rule(std::string_view text) {
@@ -103,20 +130,42 @@ bool Study::operator==(const Study& other) const {
          air_above == other.air_above && air_below == other.air_below && air_around == other.air_around &&
          frequency_hz == other.frequency_hz && longest_edge == other.longest_edge && min_angle_deg == other.min_angle_deg &&
          edge_at_copper == other.edge_at_copper && growth == other.growth && seed == other.seed && smooth == other.smooth &&
-         policy == other.policy && sublayers == other.sublayers && tolerance == other.tolerance &&
+         policy == other.policy && sublayers == other.sublayers && height_bounds == other.height_bounds &&
+         match == other.match && paper_compat == other.paper_compat && tolerance == other.tolerance &&
          arcs.sagitta_nm == other.arcs.sagitta_nm && arcs.mode == other.arcs.mode && unit == other.unit &&
-         max_prisms == other.max_prisms;
+         max_prisms == other.max_prisms && conductor_surface == other.conductor_surface && problem == other.problem &&
+         solver == other.solver && ports == other.ports && boundaries == other.boundaries && sweep == other.sweep &&
+         modes == other.modes;
+}
+
+std::optional<double> highest_frequency_hz(const Study& study) {
+  if (study.frequency_hz || !study.sweep) return study.frequency_hz;
+  return study.sweep->list_hz.empty() ? study.sweep->to_hz : study.sweep->list_hz.back();
+}
+
+std::vector<Fault> faults_of(const Study& study) {
+  FaultList faults;
+  check_region(study, faults);
+  faults.require_length("/air/above", study.air_above, 0, max_coordinate_nm);
+  faults.require_length("/air/below", study.air_below, 0, max_coordinate_nm);
+  faults.require_length("/air/around", study.air_around, 0, max_coordinate_nm);
+  check_mesh(study, faults);
+  faults.require_length("/arcs/sagitta", study.arcs.sagitta_nm, 1, nm_per_mm);
+  if (study.max_prisms < 1)
+    faults.add("/limits/max_prisms", fmt::format("{} is out of range; expected at least 1", study.max_prisms));
+  check_physics(study, faults);
+  return faults.take();
+}
+
+std::string text_of(const std::vector<Fault>& faults) {
+  std::string text;
+  for (const Fault& fault : faults) text += fmt::format("{}{}: {}", text.empty() ? "" : "\n  ", fault.field, fault.text);
+  return text;
 }
 
 void check(const Study& study) {
-  check_region(study);
-  require_length("/air/above", study.air_above, 0, max_coordinate_nm);
-  require_length("/air/below", study.air_below, 0, max_coordinate_nm);
-  require_length("/air/around", study.air_around, 0, max_coordinate_nm);
-  check_mesh(study);
-  require_length("/arcs/sagitta", study.arcs.sagitta_nm, 1, nm_per_mm);
-  if (study.max_prisms < 1)
-    refuse("/limits/max_prisms", fmt::format("{} is out of range; expected at least 1", study.max_prisms));
+  if (const std::vector<Fault> faults = faults_of(study); !faults.empty())
+    throw Error(ErrorCode::study_invalid, text_of(faults));
 }
 
 }  // namespace pcbmesh::study

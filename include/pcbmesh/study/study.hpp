@@ -11,6 +11,7 @@
 
 #include "pcbmesh/base/units.hpp"
 #include "pcbmesh/geometry/path.hpp"
+#include "pcbmesh/study/physics.hpp"
 
 namespace pcbmesh::study {
 
@@ -23,8 +24,15 @@ enum class RegionKind {
 
 /// How copper enters the mesh.
 enum class ConductorMode {
-  solid,  ///< copper is a meshed volume
-  hollow  ///< copper is left out; its skin is tagged surface|net
+  solid,   ///< copper is a meshed volume
+  hollow,  ///< copper is left out; its skin is tagged surface|net
+  sheet    ///< copper has no thickness: faces at one level, tagged sheet|net; barrels of the net are hollow
+};
+
+/// What holds on the faces of hollow and sheet conductors.
+enum class ConductorSurface {
+  lossy,  ///< surface impedance of the copper's conductivity
+  pec     ///< perfect conductor
 };
 
 /// Overrides the conductor mode of one net, one layer, or one net on one layer. Later rules win.
@@ -35,14 +43,16 @@ struct ConductorRule {
   bool operator==(const ConductorRule&) const = default;
 };
 
-/// Common prism height h, the paper's CALCULATE_PRISM_HEIGHT. Policies 2 to 5 feed h back as longest edge when h is smaller.
+/// Common prism height h, the paper's CALCULATE_PRISM_HEIGHT. Policies 2 to 6 feed h back as longest edge when h is smaller.
 enum class HeightPolicy {
-  none,           ///< our own: no common height; every slab stays one sub-layer unless `sublayers` says otherwise
-  basic,          ///< case 1: h = thinnest layer, no feedback
-  average,        ///< case 2: mean optimal height
-  maximum,        ///< case 3: largest optimal height
-  minimum,        ///< case 4: smallest optimal height
-  thinnest_layer  ///< case 5: thinnest layer, with feedback
+  none,            ///< our own: no common height; every slab stays one sub-layer unless `sublayers` says otherwise
+  basic,           ///< case 1: h = thinnest layer, no feedback
+  average,         ///< case 2: mean optimal height
+  maximum,         ///< case 3: largest optimal height
+  minimum,         ///< case 4: smallest optimal height
+  thinnest_layer,  ///< case 5: thinnest layer, with feedback
+  weighted,        ///< 6, our own: heights averaged by how much quality a triangle loses off its own (F8 of the evidence)
+  matched          ///< 7, our own: longest edge and counts together, for a target of quality or a budget
 };
 
 /// What the triangulation starts from.
@@ -61,6 +71,23 @@ enum class SublayerRule {
   best_mean  ///< the counts of greatest plain mean quality on the final mesh (Dinkelbach); the plain mean can be gamed
 };
 
+/// What a field solver asks of the heights, whatever the policy chose. Unset = no such bound.
+struct HeightBounds {
+  double elements_per_wavelength = 3;          ///< in the local material, heights and longest edge; needs a frequency
+  std::optional<int> elements_per_dielectric;  ///< at least so many sub-layers in every dielectric
+  std::optional<int> skin_depth_layers;        ///< so many sub-layers in the first skin depth below a face of meshed copper
+  std::optional<double> height_growth;         ///< largest ratio of neighbouring sub-layers; 2 if skin_depth_layers is set
+  bool operator==(const HeightBounds&) const = default;
+};
+
+/// What policy matched aims at: the fewest prisms of a quality, or the best quality of a budget; with neither, the knee.
+struct MatchGoal {
+  std::optional<double> target_quality;         ///< mean and volume-weighted q_p at least this
+  std::optional<std::int64_t> budget_prisms;    ///< at most so many prisms
+  std::optional<std::int64_t> budget_unknowns;  ///< at most so many edges: unknowns of the lowest edge elements
+  bool operator==(const MatchGoal&) const = default;
+};
+
 /// What the engineer wants to know about a board: everything that steers the mesh. Plain values; parse and
 /// resolve check them. Lengths in nanometres.
 struct Study {
@@ -73,6 +100,7 @@ struct Study {
 
   ConductorMode conductors = ConductorMode::solid;
   std::vector<ConductorRule> conductor_rules;
+  ConductorSurface conductor_surface = ConductorSurface::lossy;
 
   Nm air_above = 1 * nm_per_mm;  ///< 0 = no air: outside the outline is then void
   Nm air_below = 1 * nm_per_mm;
@@ -86,25 +114,39 @@ struct Study {
   TriangleSeed seed = TriangleSeed::delaunay;  ///< hex excludes edge_at_copper
   bool smooth = false;                         ///< guarded smoothing of the triangles
   HeightPolicy policy = HeightPolicy::average;
-  SublayerRule sublayers = SublayerRule::optimal;
+  SublayerRule sublayers = SublayerRule::optimal;  ///< not used by policy matched, which chooses the counts itself
+  HeightBounds height_bounds;
+  MatchGoal match;              ///< policy matched only
+  bool paper_compat = false;    ///< the rules the paper's tables imply: docs/decisions/0007
   std::optional<Nm> tolerance;  ///< empty = auto
   geometry::ArcOptions arcs{};
   LengthUnit unit = LengthUnit::metre;
   std::int64_t max_prisms = 200'000'000;  ///< refuse above this forecast
+
+  Problem problem = Problem::driven;
+  Solver solver = Solver::none;
+  std::vector<Port> ports;
+  std::array<Boundary, num_hull_sides> boundaries{};  ///< by HullSide
+  std::optional<Sweep> sweep;
+  Modes modes;
 
   bool operator==(const Study&) const;
 };
 
 [[nodiscard]] std::string_view name_of(RegionKind value);
 [[nodiscard]] std::string_view name_of(ConductorMode value);
+[[nodiscard]] std::string_view name_of(ConductorSurface value);
 [[nodiscard]] std::string_view name_of(HeightPolicy value);
 [[nodiscard]] std::string_view name_of(SublayerRule value);
 [[nodiscard]] std::string_view name_of(TriangleSeed value);
-/// Inverse of name_of; the paper's case numbers "1" to "5" are policies too. @throws Error usage (101) listing the choices.
+/// Inverse of name_of; the numbers "1" to "7" are policies too. @throws Error usage (101) listing the choices.
 [[nodiscard]] HeightPolicy parse_height_policy(std::string_view text);
 [[nodiscard]] SublayerRule parse_sublayer_rule(std::string_view text);
 [[nodiscard]] TriangleSeed parse_triangle_seed(std::string_view text);
 [[nodiscard]] ConductorMode parse_conductor_mode(std::string_view text);
+
+/// Highest frequency of interest: study.frequency_hz, else the end of the sweep, else nothing.
+[[nodiscard]] std::optional<double> highest_frequency_hz(const Study& study);
 
 /// Reads a study JSON (docs/schema/study.schema.json). Unknown fields are errors.
 /// @throws Error study_invalid (102) with the field's JSON pointer, file_unreadable (201), file_syntax (202) with the line.
@@ -114,7 +156,17 @@ struct Study {
 /// The study as JSON, every default filled in; parse_study(to_json(s)) == s.
 [[nodiscard]] std::string to_json(const Study& study);
 
-/// Ranges and combinations. @throws Error study_invalid (102).
+/// One thing wrong with a study, by itself or on a board.
+struct Fault {
+  std::string field;  ///< JSON pointer, "/ports/1/net"
+  std::string text;   ///< what, where, what to do
+};
+
+/// Everything wrong with ranges and combinations; empty = fine.
+[[nodiscard]] std::vector<Fault> faults_of(const Study& study);
+/// "/a: text" of one fault; of several, one line each.
+[[nodiscard]] std::string text_of(const std::vector<Fault>& faults);
+/// @throws Error study_invalid (102) naming every fault at once.
 void check(const Study& study);
 
 }  // namespace pcbmesh::study
