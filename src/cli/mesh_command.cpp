@@ -22,11 +22,11 @@ namespace pcbmesh::cli {
 namespace {
 
 struct Options {
-  std::string board, from, to, msh_version;
+  std::string board, from, to, msh_version, compression = "none", vtk_wedge = "legacy";
   std::vector<std::string> outputs;
-  bool ascii = false, no_check = false, json = false, dry_run = false, forecast = false, quality = false, explain = false,
-       quiet = false, warnings_as_errors = false;
-  int threads = 2;
+  bool ascii = false, base64 = false, faces = false, no_check = false, json = false, dry_run = false, forecast = false,
+       quality = false, explain = false, quiet = false, warnings_as_errors = false;
+  int threads = 2, num_parts = 2, index_bits = 0;
   std::shared_ptr<StudyOptions> study;
 };
 
@@ -39,11 +39,17 @@ void require_no_warnings(const Options& options, const Diagnostics& diagnostics)
 pipeline::OutputOptions output_options(const Options& options, LengthUnit unit) {
   if (options.outputs.empty() && !options.dry_run)
     throw Error(ErrorCode::usage, "no output: give -o board.msh, or --dry-run for the counts alone");
-  return {{options.outputs.begin(), options.outputs.end()},
-          options.to,
-          {!options.ascii, unit, options.msh_version},
-          !options.no_check,
-          options.threads};
+  formats::WriteMeshOptions write{.binary = !options.ascii, .unit = unit, .version = options.msh_version};
+  write.compression = options.compression == "zlib"  ? formats::Compression::zlib
+                      : options.compression == "lz4" ? formats::Compression::lz4
+                                                     : formats::Compression::none;
+  write.base64 = options.base64;
+  write.vtk_wedge = options.vtk_wedge == "parametric" ? formats::VtkWedge::parametric : formats::VtkWedge::legacy;
+  write.faces = options.faces;
+  write.num_parts = options.num_parts;
+  write.index_bits = options.index_bits;
+  write.num_threads = options.threads;
+  return {{options.outputs.begin(), options.outputs.end()}, options.to, write, !options.no_check, options.threads};
 }
 
 int run(const Options& options) {
@@ -98,12 +104,31 @@ Command add_mesh_command(CLI::App& program) {
   auto options = std::make_shared<Options>();
   command->add_option("board", options->board, "Board file: KiCad .kicad_pcb or native .json; .gz and .xz are unpacked")
       ->required();
-  command->add_option("-o,--output", options->outputs, "Mesh file; its ending picks the format (.msh, .vtu); repeatable")
+  command
+      ->add_option("-o,--output", options->outputs,
+                   "Mesh file; its ending picks the format (.msh, .vtu, .xdmf ...; see 'pcbmesh formats'); repeatable")
       ->allow_extra_args(false);
   constexpr const char* output = "Output";
   command->add_flag("--ascii", options->ascii, "Text instead of binary, where the format has both")->group(output);
   command->add_option("--msh-version", options->msh_version, "Gmsh format: 4.1 (default) or 2.2 (GetDP, Palace, Elmer)")
       ->check(CLI::IsMember({"4.1", "2.2"}))
+      ->group(output);
+  command->add_option("--compress", options->compression, "VTK and HDF5 files: none (default), zlib or, for VTU, lz4")
+      ->check(CLI::IsMember({"none", "zlib", "lz4"}))
+      ->group(output);
+  command->add_flag("--base64", options->base64, "VTU: arrays as base64 text, which makes it valid XML")->group(output);
+  command
+      ->add_option(
+          "--vtk-wedge", options->vtk_wedge,
+          "Corners of wedges in VTU and VTKHDF: legacy (default; VTK to 9.6, meshio, Gmsh) or parametric (VTK from 9.7)")
+      ->check(CLI::IsMember({"legacy", "parametric"}))
+      ->group(output);
+  command->add_flag("--faces", options->faces, "VTU and PVTU: tagged faces as cells too")->group(output);
+  command->add_option("--parts", options->num_parts, "PVTU: number of parts (default 2)")
+      ->check(CLI::Range(1, 1000000))
+      ->group(output);
+  command->add_option("--index-bits", options->index_bits, "VTK and HDF5 files: 32 or 64 (default: 32 where they suffice)")
+      ->check(CLI::IsMember({0, 32, 64}))
       ->group(output);
   command->add_option("--from", options->from, "Format of the board (default: by content and name)")->group(output);
   command->add_option("--to", options->to, "Format of the mesh (default: by ending)")->group(output);
