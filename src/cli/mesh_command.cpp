@@ -11,9 +11,12 @@
 #include "pcbmesh/formats/registry.hpp"
 #include "pcbmesh/pipeline/mesh_board.hpp"
 #include "pcbmesh/pipeline/write_outputs.hpp"
+#include "pcbmesh/view/report.hpp"
 #include "src/cli/commands.hpp"
 #include "src/cli/explain_text.hpp"
+#include "src/cli/mesh_or_draw.hpp"
 #include "src/cli/mesh_report.hpp"
+#include "src/cli/page_contents.hpp"
 #include "src/cli/quality_text.hpp"
 #include "src/cli/study_options.hpp"
 #include "src/cli/terminal.hpp"
@@ -22,7 +25,7 @@ namespace pcbmesh::cli {
 namespace {
 
 struct Options {
-  std::string board, from, to, msh_version, compression = "none", vtk_wedge = "legacy";
+  std::string board, from, to, msh_version, html, compression = "none", vtk_wedge = "legacy";
   std::vector<std::string> outputs;
   bool ascii = false, base64 = false, faces = false, no_check = false, json = false, dry_run = false, forecast = false,
        quality = false, explain = false, quiet = false, warnings_as_errors = false;
@@ -59,7 +62,9 @@ int run(const Options& options) {
   const Progress progress = terminal_progress(options.quiet);
   progress.at("read", 0);
   const formats::ReadBoardResult read = formats::read_board(options.board, options.from, progress);
-  pipeline::MeshBoardResult result = pipeline::mesh_board(read.board, study, progress);
+  pipeline::MeshBoardResult result = mesh_or_draw(
+      read.board, study, options.outputs.empty() ? std::filesystem::path() : std::filesystem::path(options.outputs.front()),
+      progress);
   Diagnostics all = read.diagnostics;
   all.merge(result.diagnostics);
   result.diagnostics = std::move(all);
@@ -85,6 +90,12 @@ int run(const Options& options) {
     const std::filesystem::path summary = pipeline::file_beside(output.meshes.front(), ".report.json");
     mesh_run.files = written.files;
     mesh_run.files.push_back(summary.string());
+    if (!options.html.empty()) {
+      progress.at("view", 0);
+      mesh_run.files.push_back(options.html);
+      pipeline::write_binary_file(options.html,
+                                  view::report_html(result.mesh, page_contents(mesh_run, metres_per(study.unit))));
+    }
     pipeline::write_text_file(summary, report_json(mesh_run));
   }
   clear_progress();
@@ -132,6 +143,8 @@ Command add_mesh_command(CLI::App& program) {
       ->group(output);
   command->add_option("--from", options->from, "Format of the board (default: by content and name)")->group(output);
   command->add_option("--to", options->to, "Format of the mesh (default: by ending)")->group(output);
+  command->add_option("--html", options->html, "Also write a page to look at: 3D view, findings, quality; one file, no network")
+      ->group(output);
   command->add_flag("--no-check", options->no_check, "Do not read the written mesh back and judge it")->group(output);
   command->add_flag("--dry-run", options->dry_run, "Do everything but write: exact counts")->group(output);
   command->add_flag("--forecast", options->forecast, "Print what was forecast, the exact counts, unknowns and solver memory")

@@ -67,6 +67,12 @@ void write_text_file(const std::filesystem::path& file, std::string_view text) {
   sink.commit();
 }
 
+void write_binary_file(const std::filesystem::path& file, std::string_view bytes) {
+  formats::FileSink sink(file);
+  sink.put(bytes);
+  sink.commit();
+}
+
 OutputResult write_outputs(const MeshBoardResult& result, const OutputOptions& options, const Progress& progress) {
   OutputResult out;
   const std::filesystem::path tags = file_beside(options.meshes.front(), ".tags.json"),

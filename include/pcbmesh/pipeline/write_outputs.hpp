@@ -42,6 +42,8 @@ void require_writable(const OutputOptions& options, const std::filesystem::path&
 
 /// Writes a small text file, whole or not at all. @throws Error write_failed (701).
 void write_text_file(const std::filesystem::path& file, std::string_view text);
+/// The same, byte for byte: write_text_file ends a last line that has no end.
+void write_binary_file(const std::filesystem::path& file, std::string_view bytes);
 
 /// Every node, prism and boundary face written out: O(prisms) memory. For judging and converting, not for writing.
 [[nodiscard]] mesh::MeshData expand(const mesh::PrismMesh& mesh);
