@@ -17,5 +17,6 @@ struct Command {
 [[nodiscard]] Command add_inspect_command(CLI::App& program);
 [[nodiscard]] Command add_check_command(CLI::App& program);
 [[nodiscard]] Command add_formats_command(CLI::App& program);
+[[nodiscard]] Command add_touchstone_command(CLI::App& program);
 
 }  // namespace pcbmesh::cli

@@ -37,7 +37,8 @@ struct BoardFormat {
 struct WriteMeshOptions {
   bool binary = true;
   LengthUnit unit = LengthUnit::metre;
-  std::string version;  ///< format version, e.g. "4.1"; empty = the format's default
+  std::string version;            ///< format version, e.g. "4.1"; empty = the format's default
+  bool one_number_space = false;  ///< face groups are numbered after the volume groups (GetDP knows one kind of number)
 };
 
 /// A mesh format. `write` or `read` may be null.
