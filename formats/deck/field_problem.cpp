@@ -154,8 +154,8 @@ std::vector<std::string> flaws(const FieldProblem& problem) {
         if (!(f > 0 && std::isfinite(f))) out.push_back(fmt::format("{} Hz is no frequency of a sweep", f));
       break;
     case Problem::eigenmode:
-      if (options.num_modes < 1) out.emplace_back("at least one mode must be asked for");
-      if (!(options.target_hz > 0)) out.emplace_back("the frequency near which modes are sought must be above 0");
+      if (options.modes.number < 1) out.emplace_back("at least one mode must be asked for");
+      if (!(options.modes.above_hz > 0)) out.emplace_back("the frequency near which modes are sought must be above 0");
       break;
     case Problem::electrostatic: {
       const bool has_ground =
@@ -204,7 +204,7 @@ FieldProblem state(const mesh::PrismMesh& mesh, const DeckOptions& options, std:
   add_conductors(mesh, problem);
   if (const std::vector<std::string> found = flaws(problem); !found.empty())
     throw Error(ErrorCode::study_invalid,
-                fmt::format("no deck for a {} problem: {}", name_of(options.problem), fmt::join(found, "; ")));
+                fmt::format("no deck for a {} problem: {}", study::name_of(options.problem), fmt::join(found, "; ")));
   note_assumptions(problem, diagnostics);
   return problem;
 }

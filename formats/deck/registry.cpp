@@ -14,19 +14,11 @@ namespace {
 // The table: a new solver is one include above and one entry here.
 constexpr std::array<const DeckFormat*, 1> deck_table{&getdp::deck_format};
 
-constexpr std::array<std::string_view, 3> problem_names{"driven", "eigenmode", "electrostatic"};
-
 }  // namespace
 
-std::string_view name_of(Problem problem) {
-  return problem_names[static_cast<std::size_t>(problem)];
-}
-
-Problem parse_problem(std::string_view text) {
-  const auto found = std::ranges::find(problem_names, text);
-  if (found == problem_names.end())
-    throw Error(ErrorCode::usage, fmt::format("'{}' is no problem; choose driven, eigenmode or electrostatic", text));
-  return static_cast<Problem>(found - problem_names.begin());
+DeckOptions deck_options(const study::Study& study, std::string mesh) {
+  return {study.problem, study.sweep ? study.sweep->frequencies_hz() : std::vector<double>(), study.modes, std::move(mesh),
+          study.unit};
 }
 
 std::span<const DeckFormat* const> deck_formats() {

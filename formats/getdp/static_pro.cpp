@@ -33,12 +33,12 @@ std::string eigenmode_pro(const deck::FieldProblem& problem) {
       out += fmt::format("  eps_Vol[Vol_{0}] = {1};  tan_Vol[Vol_{0}] = {2};  nu_Vol[Vol_{0}] = {3};  // {4}\n", volume.id,
                          number(volume.material.eps_r),
                          number(volume.material.tan_delta +
-                                volume.material.sigma_s_per_m / (2 * 3.14159265358979324 * problem.options.target_hz *
+                                volume.material.sigma_s_per_m / (2 * 3.14159265358979324 * problem.options.modes.above_hz *
                                                                  deck::eps0_f_per_m * volume.material.eps_r)),
                          number(1 / volume.material.mu_r), deck::plain(volume.name));
   // Eigenvalues are k0^2 in squared reciprocal mesh units.
   const double hz_per_root = deck::light_m_per_s / (2 * 3.14159265358979324 * unit_m);
-  const double target = problem.options.target_hz / hz_per_root;
+  const double target = problem.options.modes.above_hz / hz_per_root;
   out += fmt::format("  Hz_Per_Root = {};\n}}\n", number(hz_per_root));
   out += edge_space("Vol_Field");
   out += integration();
@@ -74,7 +74,7 @@ PostOperation {{
   {{ Name Field; NameOfPostProcessing Post_E; Operation {{ Print[ e, OnElementsOf Vol_Field, File "{3}.e.pos" ]; }} }}
 }}
 )",
-                     problem.options.num_modes, number(target * target), results, deck::plain(problem.stem()));
+                     problem.options.modes.number, number(target * target), results, deck::plain(problem.stem()));
   return out;
 }
 

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "src/cli/commands.hpp"
 #include "src/cli/mesh_report.hpp"
 #include "src/cli/quality_text.hpp"
+#include "src/cli/solver_output.hpp"
 #include "src/cli/study_options.hpp"
 #include "src/cli/terminal.hpp"
 
@@ -46,7 +48,8 @@ pipeline::OutputOptions output_options(const Options& options, LengthUnit unit) 
 
 int run(const Options& options) {
   const study::Study study = study_from(*options.study);
-  const pipeline::OutputOptions output = output_options(options, study.unit);
+  pipeline::OutputOptions output = output_options(options, study.unit);
+  prepare_for_solver(study, options.board, output);
   pipeline::require_writable(output, options.board);
   const Progress progress = terminal_progress(options.quiet);
   progress.at("read", 0);
@@ -63,11 +66,19 @@ int run(const Options& options) {
   // For a mesh that is thrown away the tables are made only where somebody will see them.
   if (!options.dry_run || options.json || options.quality) mesh_run.quality = layering::quality_report(result.mesh);
   pipeline::OutputResult written;
+  std::optional<formats::Deck> deck;
   if (!options.dry_run) {
     written = pipeline::write_outputs(result, output, progress);
     if (written.report) mesh_run.check = &*written.report;
     const std::filesystem::path summary = pipeline::file_beside(output.meshes.front(), ".report.json");
     mesh_run.files = written.files;
+    if (result.resolved.solver != study::Solver::none) {
+      Diagnostics assumed;
+      deck = write_solver_deck(result, output.meshes.front(), assumed);
+      if (!options.quiet) print_diagnostics(assumed);
+      result.diagnostics.merge(assumed);
+      for (const std::filesystem::path& file : deck->files) mesh_run.files.push_back(file.string());
+    }
     mesh_run.files.push_back(summary.string());
     pipeline::write_text_file(summary, report_json(mesh_run));
   }
@@ -75,7 +86,8 @@ int run(const Options& options) {
   if (options.json)
     fmt::print("{}\n", report_json(mesh_run));
   else if (!options.quiet)
-    fmt::print("{}{}", report_text(mesh_run), options.quality ? quality_text(mesh_run.quality) : "");
+    fmt::print("{}{}{}", report_text(mesh_run), options.quality ? quality_text(mesh_run.quality) : "",
+               deck ? run_text(*deck) : "");
   return written.report && !written.report->passed() ? 1 : 0;
 }
 
@@ -86,7 +98,9 @@ Command add_mesh_command(CLI::App& program) {
   auto options = std::make_shared<Options>();
   command->add_option("board", options->board, "Board file: KiCad .kicad_pcb or native .json; .gz and .xz are unpacked")
       ->required();
-  command->add_option("-o,--output", options->outputs, "Mesh file; its ending picks the format (.msh, .vtu); repeatable")
+  command
+      ->add_option("-o,--output", options->outputs,
+                   "Mesh file; its ending picks the format (.msh, .vtu); repeatable. With --for: a folder for mesh and deck")
       ->allow_extra_args(false);
   constexpr const char* output = "Output";
   command->add_flag("--ascii", options->ascii, "Text instead of binary, where the format has both")->group(output);
@@ -114,6 +128,7 @@ Command add_mesh_command(CLI::App& program) {
       "  pcbmesh mesh board.kicad_pcb -o board.msh\n"
       "  pcbmesh mesh board.kicad_pcb --nets /USB_P,/USB_N --frequency 10GHz -o usb.msh -o usb.vtu\n"
       "  pcbmesh mesh board.kicad_pcb --region 10mm,-30mm,25mm,-18mm --hollow GND -o part.msh\n"
+      "  pcbmesh mesh board.kicad_pcb --nets /USB_P,/USB_N --study usb.json --for getdp -o out/\n"
       "  pcbmesh mesh examples/serpentine.json --air 0 --policy minimum --sublayers floor -o serpentine.msh");
   return {command, [options] { return run(*options); }};
 }

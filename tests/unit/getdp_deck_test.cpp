@@ -18,7 +18,7 @@ namespace pcbmesh {
 namespace {
 
 using formats::DeckOptions;
-using formats::Problem;
+using study::Problem;
 using mesh::BoundaryCondition;
 using testing::Box;
 using testing::box_parts;
@@ -89,8 +89,8 @@ TEST(GetdpDeck, CavityOfEightCellsGivesWhatAnIndependentCodeGave) {
   DeckOptions options;
   options.problem = Problem::eigenmode;
   options.mesh = "box.msh";
-  options.target_hz = light * std::sqrt(20.0) / (2 * M_PI);
-  options.num_modes = 2;
+  options.modes.above_hz = light * std::sqrt(20.0) / (2 * M_PI);
+  options.modes.number = 2;
   std::istringstream rows(
       solve(mesh::PrismMesh::from_parts(box_parts(box)), options, folder.path(), "Resonances", "box.modes.txt"));
   std::string row;

@@ -10,28 +10,23 @@
 #include "pcbmesh/base/diagnostics.hpp"
 #include "pcbmesh/base/units.hpp"
 #include "pcbmesh/mesh/prism_mesh.hpp"
+#include "pcbmesh/study/study.hpp"
 
 namespace pcbmesh::formats {
 
-/// What is solved for.
-enum class Problem {
-  driven,        ///< full wave, S-parameters between ports over a sweep
-  eigenmode,     ///< full wave, resonances
-  electrostatic  ///< capacitance matrix of the nets
-};
-[[nodiscard]] std::string_view name_of(Problem problem);
-/// Inverse of name_of. @throws Error usage (101) listing the choices.
-[[nodiscard]] Problem parse_problem(std::string_view text);
+using study::Problem;
 
 /// What a deck says beyond the mesh.
 struct DeckOptions {
   Problem problem = Problem::driven;
   std::vector<double> frequencies_hz;   ///< driven: ascending, at least one, > 0
-  int num_modes = 6;                    ///< eigenmode
-  double target_hz = 1e9;               ///< eigenmode: resonances nearest to it
+  study::Modes modes;                   ///< eigenmode
   std::string mesh;                     ///< name of the mesh file, in the deck's own folder
   LengthUnit unit = LengthUnit::metre;  ///< of the mesh file
 };
+
+/// What a study says, for a mesh file of that name.
+[[nodiscard]] DeckOptions deck_options(const study::Study& study, std::string mesh);
 
 /// A deck on disk.
 struct Deck {
