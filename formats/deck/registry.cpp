@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 
+#include "formats/elmer_deck/format.hpp"
 #include "formats/getdp/format.hpp"
+#include "formats/palace/format.hpp"
 #include "pcbmesh/base/error.hpp"
 #include "pcbmesh/formats/deck.hpp"
 
@@ -12,7 +14,7 @@ namespace pcbmesh::formats {
 namespace {
 
 // The table: a new solver is one include above and one entry here.
-constexpr std::array<const DeckFormat*, 1> deck_table{&getdp::deck_format};
+constexpr std::array<const DeckFormat*, 3> deck_table{&getdp::deck_format, &palace::deck_format, &elmer_deck::deck_format};
 
 }  // namespace
 
@@ -31,6 +33,10 @@ const DeckFormat& find_deck_format(std::string_view name) {
   std::string list;
   for (const DeckFormat* format : deck_table) list += fmt::format("{}{}", list.empty() ? "" : ", ", format->name);
   throw Error(ErrorCode::usage, fmt::format("there is no deck for '{}'; solvers are {}", name, list));
+}
+
+void require_deck(const mesh::PrismMesh& mesh, std::string_view solver, const DeckOptions& options) {
+  find_deck_format(solver).require(mesh, options);
 }
 
 Deck write_deck(const mesh::PrismMesh& mesh, std::string_view solver, const DeckOptions& options,

@@ -5,8 +5,8 @@
 
 #include <array>
 
+#include "formats/deck/deck_file.hpp"
 #include "formats/getdp/write_pro.hpp"
-#include "formats/sink/file_sink.hpp"
 #include "pcbmesh/base/error.hpp"
 
 namespace pcbmesh::formats::getdp {
@@ -37,11 +37,9 @@ void require_expressible(const deck::FieldProblem& problem) {
                    "solid copper there, which floats as a body of very high permittivity");
 }
 
-void put_file(const std::filesystem::path& file, std::string_view text, Deck& deck) {
-  FileSink sink(file);
-  sink.put(text);
-  sink.commit();
-  deck.files.push_back(file);
+void require(const mesh::PrismMesh& mesh, const DeckOptions& options) {
+  Diagnostics ignored;
+  require_expressible(deck::state(mesh, options, static_cast<std::int32_t>(mesh.volume_tags().size()), ignored));
 }
 
 Deck write(const mesh::PrismMesh& mesh, const DeckOptions& options, const std::filesystem::path& folder,
@@ -78,16 +76,17 @@ Deck write(const mesh::PrismMesh& mesh, const DeckOptions& options, const std::f
       break;
   }
   Deck deck;
-  put_file(folder / (stem + ".pro"), text, deck);
-  put_file(folder / (stem + ".run.sh"),
-           fmt::format("#!/bin/sh\n# Solves {0} with GetDP (Debian: apt-get install getdp) and ends in {1}.\n"
-                       "# GETDP and PCBMESH name other programs than those on the path.\nset -eu\ncd \"$(dirname \"$0\")\"\n"
-                       "\"${{GETDP:-getdp}}\" {2} -msh {3} -solve {4} -v 3\n{5}",
-                       deck::plain(options.mesh), deck::plain(results), deck::shell_word(stem + ".pro"),
-                       deck::shell_word(options.mesh), resolution, after),
-           deck);
-  deck.command = {"sh", (folder / (stem + ".run.sh")).string()};
+  deck::put_file(folder / (stem + ".pro"), text, deck);
+  deck::put_run_script(
+      folder / (stem + ".run.sh"),
+      fmt::format(
+          "Solves {} with GetDP (Debian: apt-get install getdp) and ends in {}. GETDP, PCBMESH: where the programs are.",
+          deck::plain(options.mesh), deck::plain(results)),
+      fmt::format("\"${{GETDP:-getdp}}\" {} -msh {} -solve {} -v 3\n{}", deck::shell_word(stem + ".pro"),
+                  deck::shell_word(options.mesh), resolution, after),
+      deck);
   deck.result = results;
+  deck.calls_pcbmesh = options.problem == Problem::driven;
   return deck;
 }
 
@@ -97,6 +96,7 @@ constinit const DeckFormat deck_format{
     "getdp",
     "GetDP 3: full wave by edge elements on prisms, resonances, capacitances; ends in Touchstone",
     {.format = "msh", .version = "2.2", .ending = ".msh", .binary = true, .one_number_space = true, .tetrahedra = false},
+    &require,
     &write};
 
 }  // namespace pcbmesh::formats::getdp

@@ -68,6 +68,7 @@ int run(const Options& options) {
   pipeline::OutputResult written;
   std::optional<formats::Deck> deck;
   if (!options.dry_run) {
+    require_solver_deck(result, output.meshes.front());
     written = pipeline::write_outputs(result, output, progress);
     if (written.report) mesh_run.check = &*written.report;
     const std::filesystem::path summary = pipeline::file_beside(output.meshes.front(), ".report.json");

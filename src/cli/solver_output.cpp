@@ -58,6 +58,12 @@ void prepare_for_solver(const study::Study& study, const std::string& board, pip
   output.write.one_number_space = solver.mesh.one_number_space;
 }
 
+void require_solver_deck(const pipeline::MeshBoardResult& result, const std::filesystem::path& mesh_file) {
+  if (result.resolved.solver == study::Solver::none) return;
+  formats::require_deck(result.mesh, study::name_of(result.resolved.solver),
+                        formats::deck_options(result.resolved, mesh_file.filename().string()));
+}
+
 formats::Deck write_solver_deck(const pipeline::MeshBoardResult& result, const std::filesystem::path& mesh_file,
                                 Diagnostics& diagnostics) {
   const formats::DeckOptions options = formats::deck_options(result.resolved, mesh_file.filename().string());
@@ -67,7 +73,7 @@ formats::Deck write_solver_deck(const pipeline::MeshBoardResult& result, const s
 
 std::string run_text(const formats::Deck& deck) {
   std::string command;
-  if (!is_on_path("pcbmesh")) {
+  if (deck.calls_pcbmesh && !is_on_path("pcbmesh")) {
     std::error_code ignored;
     const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", ignored);
     if (!self.empty()) command = fmt::format("PCBMESH={} ", formats::deck::shell_word(self.string()));

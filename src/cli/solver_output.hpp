@@ -18,6 +18,9 @@ namespace pcbmesh::cli {
 /// @throws Error usage (101) when the user asks for another format or version than the solver reads.
 void prepare_for_solver(const study::Study& study, const std::string& board, pipeline::OutputOptions& output);
 
+/// Refuses a deck that can't be, before the mesh is written. @throws as formats::require_deck.
+void require_solver_deck(const pipeline::MeshBoardResult& result, const std::filesystem::path& mesh_file);
+
 /// Writes the deck beside the first mesh file. @throws as formats::write_deck.
 [[nodiscard]] formats::Deck write_solver_deck(const pipeline::MeshBoardResult& result, const std::filesystem::path& mesh_file,
                                               Diagnostics& diagnostics);

@@ -33,6 +33,7 @@ struct Deck {
   std::vector<std::filesystem::path> files;  ///< written, in order
   std::vector<std::string> command;          ///< runs it from anywhere: program and arguments
   std::string result;                        ///< file that the command ends in, in the deck's folder
+  bool calls_pcbmesh = false;                ///< the command ends in one of pcbmesh itself
 };
 
 /// How a solver wants its mesh.
@@ -48,6 +49,7 @@ struct DeckFormat {
   std::string_view name;
   std::string_view title;
   DeckMesh mesh;
+  void (*require)(const mesh::PrismMesh& mesh, const DeckOptions& options);
   Deck (*write)(const mesh::PrismMesh& mesh, const DeckOptions& options, const std::filesystem::path& folder,
                 Diagnostics& diagnostics);
 };
@@ -55,6 +57,9 @@ struct DeckFormat {
 [[nodiscard]] std::span<const DeckFormat* const> deck_formats();
 /// @throws Error usage (101) listing the solvers.
 [[nodiscard]] const DeckFormat& find_deck_format(std::string_view name);
+
+/// Looks before anything is written. @throws Error study_invalid (102), format_limit (703) as write_deck does.
+void require_deck(const mesh::PrismMesh& mesh, std::string_view solver, const DeckOptions& options);
 
 /// Writes complete solver input beside a mesh file: every material, boundary, port, frequency. Files appear whole or not at
 /// all. What the deck has to take for granted is a diagnostic (deck.*).
