@@ -128,14 +128,14 @@ TEST(Study, NamesAndParsersAreInverse) {
   for (SublayerRule v :
        {SublayerRule::floor, SublayerRule::round, SublayerRule::ceil, SublayerRule::none, SublayerRule::optimal})
     EXPECT_EQ(parse_sublayer_rule(name_of(v)), v);
-  for (ConductorMode v : {ConductorMode::solid, ConductorMode::hollow}) EXPECT_EQ(parse_conductor_mode(name_of(v)), v);
+  for (ConductorMode v : {ConductorMode::solid, ConductorMode::hollow, ConductorMode::sheet}) EXPECT_EQ(parse_conductor_mode(name_of(v)), v);
   EXPECT_EQ(name_of(RegionKind::box), "box");
   try {
     (void)parse_conductor_mode("holow");
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::usage);
-    EXPECT_NE(error.text().find("solid, hollow; did you mean 'hollow'?"), std::string::npos) << error.text();
+    EXPECT_NE(error.text().find("solid, hollow, sheet; did you mean 'hollow'?"), std::string::npos) << error.text();
   }
 }
 

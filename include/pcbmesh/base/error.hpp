@@ -38,6 +38,7 @@ enum class ErrorCode : int {
   stackup_invalid = 303,        ///< stackup can't be used (zero thickness, missing copper)
   name_unknown = 304,           ///< a net or layer named by the study is not on the board
   region_empty = 305,           ///< the region of interest holds nothing
+  port_invalid = 306,           ///< a port of the study can't be placed on the board
   overlay_topology = 401,       ///< nets would open or short at every tolerance tried
   overlay_no_fixpoint = 402,    ///< noding did not settle
   planar_crossing_edges = 403,  ///< graph handed to the triangulation has crossing edges
