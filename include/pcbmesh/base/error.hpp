@@ -44,6 +44,7 @@ enum class ErrorCode : int {
   planar_crossing_edges = 403,  ///< graph handed to the triangulation has crossing edges
   triangulation_limit = 404,    ///< vertex cap reached
   layering_invalid = 501,       ///< heights or sub-layers can't be chosen
+  target_unreachable = 502,     ///< no mesh within the budget meets the goal of policy matched
   prism_limit = 601,            ///< forecast exceeds the user's budget
   write_failed = 701,           ///< file can't be written; nothing was left behind
   format_not_built = 702,       ///< the format needs a library this build lacks
