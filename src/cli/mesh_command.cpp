@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@
 #include "src/cli/mesh_report.hpp"
 #include "src/cli/page_contents.hpp"
 #include "src/cli/quality_text.hpp"
+#include "src/cli/solver_output.hpp"
 #include "src/cli/study_options.hpp"
 #include "src/cli/terminal.hpp"
 
@@ -57,7 +59,8 @@ pipeline::OutputOptions output_options(const Options& options, LengthUnit unit) 
 
 int run(const Options& options) {
   const study::Study study = study_from(*options.study);
-  const pipeline::OutputOptions output = output_options(options, study.unit);
+  pipeline::OutputOptions output = output_options(options, study.unit);
+  prepare_for_solver(study, options.board, output);
   pipeline::require_writable(output, options.board);
   const Progress progress = terminal_progress(options.quiet);
   progress.at("read", 0);
@@ -79,7 +82,9 @@ int run(const Options& options) {
   if (is_kept || options.explain) mesh_run.layers = layering::explain_layers(result.mesh, result.layers);
   if (is_kept || options.forecast) mesh_run.measured = pipeline::measured(result.mesh);
   pipeline::OutputResult written;
+  std::optional<formats::Deck> deck;
   if (!options.dry_run) {
+    require_solver_deck(result, output.meshes.front());
     written = pipeline::write_outputs(result, output, progress);
     if (written.report) {
       const bool is_file = std::ranges::any_of(
@@ -89,6 +94,13 @@ int run(const Options& options) {
     }
     const std::filesystem::path summary = pipeline::file_beside(output.meshes.front(), ".report.json");
     mesh_run.files = written.files;
+    if (result.resolved.solver != study::Solver::none) {
+      Diagnostics assumed;
+      deck = write_solver_deck(result, output.meshes.front(), assumed);
+      if (!options.quiet) print_diagnostics(assumed);
+      result.diagnostics.merge(assumed);
+      for (const std::filesystem::path& file : deck->files) mesh_run.files.push_back(file.string());
+    }
     mesh_run.files.push_back(summary.string());
     if (!options.html.empty()) {
       progress.at("view", 0);
@@ -102,9 +114,9 @@ int run(const Options& options) {
   if (options.json)
     fmt::print("{}\n", report_json(mesh_run));
   else if (!options.quiet)
-    fmt::print("{}{}{}{}", report_text(mesh_run), options.forecast ? forecast_text(mesh_run) : "",
+    fmt::print("{}{}{}{}{}", report_text(mesh_run), options.forecast ? forecast_text(mesh_run) : "",
                options.explain ? explain_text(result, mesh_run.layers) : "",
-               options.quality ? quality_text(mesh_run.quality) : "");
+               options.quality ? quality_text(mesh_run.quality) : "", deck ? run_text(*deck) : "");
   return written.report && !written.report->passed() ? 1 : 0;
 }
 
@@ -116,8 +128,10 @@ Command add_mesh_command(CLI::App& program) {
   command->add_option("board", options->board, "Board file: KiCad .kicad_pcb or native .json; .gz and .xz are unpacked")
       ->required();
   command
-      ->add_option("-o,--output", options->outputs,
-                   "Mesh file; its ending picks the format (.msh, .vtu, .xdmf ...; see 'pcbmesh formats'); repeatable")
+      ->add_option(
+          "-o,--output", options->outputs,
+          "Mesh file; its ending picks the format (.msh, .vtu, .xdmf ...; see 'pcbmesh formats'); repeatable. With --for: a "
+          "folder for mesh and deck")
       ->allow_extra_args(false);
   constexpr const char* output = "Output";
   command->add_flag("--ascii", options->ascii, "Text instead of binary, where the format has both")->group(output);
@@ -170,6 +184,7 @@ Command add_mesh_command(CLI::App& program) {
       "  pcbmesh mesh board.kicad_pcb -o board.msh\n"
       "  pcbmesh mesh board.kicad_pcb --nets /USB_P,/USB_N --frequency 10GHz -o usb.msh -o usb.vtu\n"
       "  pcbmesh mesh board.kicad_pcb --region 10mm,-30mm,25mm,-18mm --hollow GND -o part.msh\n"
+      "  pcbmesh mesh board.kicad_pcb --nets /USB_P,/USB_N --study usb.json --for getdp -o out/\n"
       "  pcbmesh mesh examples/serpentine.json --air 0 --policy minimum --sublayers floor -o serpentine.msh");
   return {command, [options] { return run(*options); }};
 }
