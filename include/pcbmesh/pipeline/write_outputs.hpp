@@ -48,4 +48,8 @@ void write_binary_file(const std::filesystem::path& file, std::string_view bytes
 /// Every node, prism and boundary face written out: O(prisms) memory. For judging and converting, not for writing.
 [[nodiscard]] mesh::MeshData expand(const mesh::PrismMesh& mesh);
 
+/// Adds to findings about nets which feature of the board file lies nearest to the fault, for each net concerned.
+/// @param unit_m  metres per unit of the places in the report.
+void name_features(const board::Board& board, double unit_m, validation::Report& report);
+
 }  // namespace pcbmesh::pipeline
