@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -9,6 +10,7 @@
 #include "pcbmesh/base/error.hpp"
 #include "pcbmesh/formats/registry.hpp"
 #include "pcbmesh/pipeline/mesh_board.hpp"
+#include "pcbmesh/pipeline/solver_rules.hpp"
 #include "pcbmesh/pipeline/write_outputs.hpp"
 #include "src/cli/commands.hpp"
 #include "src/cli/explain_text.hpp"
@@ -35,19 +37,38 @@ void require_no_warnings(const Options& options, const Diagnostics& diagnostics)
                 fmt::format("{} warnings, and --warnings-as-errors is on", diagnostics.num_warnings()));
 }
 
-pipeline::OutputOptions output_options(const Options& options, LengthUnit unit) {
+/// What the study's solver wants of the file; what the flags say against it is refused.
+formats::WriteMeshOptions write_options(const Options& options, const study::Study& study) {
+  formats::WriteMeshOptions write{!options.ascii, study.unit, options.msh_version};
+  const pipeline::ExportRules rules = pipeline::export_rules(study.solver);
+  if (rules.msh_version.empty()) return write;
+  if (!options.msh_version.empty() && options.msh_version != rules.msh_version)
+    throw Error(ErrorCode::usage, fmt::format("{} reads MSH {}, not {}; leave out --msh-version", study::name_of(study.solver),
+                                              rules.msh_version, options.msh_version));
+  const bool has_msh = std::any_of(options.outputs.begin(), options.outputs.end(), [&](const std::string& file) {
+    const formats::MeshFormat* format = formats::find_mesh_format(file, options.to);
+    return format != nullptr && format->name == "msh";
+  });
+  if (!has_msh && !options.dry_run)
+    throw Error(ErrorCode::usage, fmt::format("{} reads MSH files; add -o NAME.msh", study::name_of(study.solver)));
+  write.version = rules.msh_version;
+  write.binary = write.binary && !rules.text;
+  return write;
+}
+
+pipeline::OutputOptions output_options(const Options& options, const study::Study& study) {
   if (options.outputs.empty() && !options.dry_run)
     throw Error(ErrorCode::usage, "no output: give -o board.msh, or --dry-run for the counts alone");
   return {{options.outputs.begin(), options.outputs.end()},
           options.to,
-          {!options.ascii, unit, options.msh_version},
+          write_options(options, study),
           !options.no_check,
           options.threads};
 }
 
 int run(const Options& options) {
   const study::Study study = study_from(*options.study);
-  const pipeline::OutputOptions output = output_options(options, study.unit);
+  const pipeline::OutputOptions output = output_options(options, study);
   pipeline::require_writable(output, options.board);
   const Progress progress = terminal_progress(options.quiet);
   progress.at("read", 0);
@@ -122,6 +143,7 @@ Command add_mesh_command(CLI::App& program) {
       "  pcbmesh mesh board.kicad_pcb -o board.msh\n"
       "  pcbmesh mesh board.kicad_pcb --nets /USB_P,/USB_N --frequency 10GHz -o usb.msh -o usb.vtu\n"
       "  pcbmesh mesh board.kicad_pcb --region 10mm,-30mm,25mm,-18mm --hollow GND -o part.msh\n"
+      "  pcbmesh mesh board.kicad_pcb --study study.json --for palace -o usb.msh\n"
       "  pcbmesh mesh examples/serpentine.json --air 0 --policy minimum --sublayers floor -o serpentine.msh");
   return {command, [options] { return run(*options); }};
 }
