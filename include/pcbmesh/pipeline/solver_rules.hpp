@@ -14,7 +14,7 @@ struct ExportRules {
   bool splits_chords = false;  ///< sheets: no inner edge may join two points of the rim
 };
 
-/// @source Palace guide/config/model, ElmerGrid and GetDP manuals, MFEM mesh formats: docs/solvers.md.
+/// @source Palace guide (config/model), manuals of ElmerGrid and GetDP, MFEM mesh formats.
 [[nodiscard]] ExportRules export_rules(study::Solver solver);
 
 }  // namespace pcbmesh::pipeline
