@@ -21,5 +21,6 @@ struct Command {
 [[nodiscard]] Command add_view_command(CLI::App& program);
 [[nodiscard]] Command add_check_command(CLI::App& program);
 [[nodiscard]] Command add_formats_command(CLI::App& program);
+[[nodiscard]] Command add_touchstone_command(CLI::App& program);
 
 }  // namespace pcbmesh::cli

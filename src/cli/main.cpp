@@ -35,7 +35,8 @@ int run(int argc, char** argv) {
   const std::array commands{pcbmesh::cli::add_mesh_command(program),  pcbmesh::cli::add_init_command(program),
                             pcbmesh::cli::add_ports_command(program), pcbmesh::cli::add_inspect_command(program),
                             pcbmesh::cli::add_view_command(program),  pcbmesh::cli::add_render_command(program),
-                            pcbmesh::cli::add_check_command(program), pcbmesh::cli::add_formats_command(program)};
+                            pcbmesh::cli::add_check_command(program), pcbmesh::cli::add_formats_command(program),
+                            pcbmesh::cli::add_touchstone_command(program)};
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

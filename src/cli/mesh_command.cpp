@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "pcbmesh/base/error.hpp"
 #include "pcbmesh/formats/registry.hpp"
 #include "pcbmesh/pipeline/mesh_board.hpp"
-#include "pcbmesh/pipeline/solver_rules.hpp"
 #include "pcbmesh/pipeline/write_outputs.hpp"
 #include "pcbmesh/view/report.hpp"
 #include "src/cli/commands.hpp"
@@ -19,6 +19,7 @@
 #include "src/cli/mesh_report.hpp"
 #include "src/cli/page_contents.hpp"
 #include "src/cli/quality_text.hpp"
+#include "src/cli/solver_output.hpp"
 #include "src/cli/study_options.hpp"
 #include "src/cli/terminal.hpp"
 
@@ -40,29 +41,10 @@ void require_no_warnings(const Options& options, const Diagnostics& diagnostics)
                 fmt::format("{} warnings, and --warnings-as-errors is on", diagnostics.num_warnings()));
 }
 
-/// What the study's solver wants of the file; what the flags say against it is refused.
-formats::WriteMeshOptions write_options(const Options& options, const study::Study& study) {
-  formats::WriteMeshOptions write{.binary = !options.ascii, .unit = study.unit, .version = options.msh_version};
-  const pipeline::ExportRules rules = pipeline::export_rules(study.solver);
-  if (rules.msh_version.empty()) return write;
-  if (!options.msh_version.empty() && options.msh_version != rules.msh_version)
-    throw Error(ErrorCode::usage, fmt::format("{} reads MSH {}, not {}; leave out --msh-version", study::name_of(study.solver),
-                                              rules.msh_version, options.msh_version));
-  const bool has_msh = std::any_of(options.outputs.begin(), options.outputs.end(), [&](const std::string& file) {
-    const formats::MeshFormat* format = formats::find_mesh_format(file, options.to);
-    return format != nullptr && format->name == "msh";
-  });
-  if (!has_msh && !options.dry_run)
-    throw Error(ErrorCode::usage, fmt::format("{} reads MSH files; add -o NAME.msh", study::name_of(study.solver)));
-  write.version = rules.msh_version;
-  write.binary = write.binary && !rules.text;
-  return write;
-}
-
-pipeline::OutputOptions output_options(const Options& options, const study::Study& study) {
+pipeline::OutputOptions output_options(const Options& options, LengthUnit unit) {
   if (options.outputs.empty() && !options.dry_run)
     throw Error(ErrorCode::usage, "no output: give -o board.msh, or --dry-run for the counts alone");
-  formats::WriteMeshOptions write = write_options(options, study);
+  formats::WriteMeshOptions write{.binary = !options.ascii, .unit = unit, .version = options.msh_version};
   write.compression = options.compression == "zlib"  ? formats::Compression::zlib
                       : options.compression == "lz4" ? formats::Compression::lz4
                                                      : formats::Compression::none;
@@ -77,7 +59,8 @@ pipeline::OutputOptions output_options(const Options& options, const study::Stud
 
 int run(const Options& options) {
   const study::Study study = study_from(*options.study);
-  const pipeline::OutputOptions output = output_options(options, study);
+  pipeline::OutputOptions output = output_options(options, study.unit);
+  prepare_for_solver(study, options.board, output);
   pipeline::require_writable(output, options.board);
   const Progress progress = terminal_progress(options.quiet);
   progress.at("read", 0);
@@ -99,7 +82,9 @@ int run(const Options& options) {
   if (is_kept || options.explain) mesh_run.layers = layering::explain_layers(result.mesh, result.layers);
   if (is_kept || options.forecast) mesh_run.measured = pipeline::measured(result.mesh);
   pipeline::OutputResult written;
+  std::optional<formats::Deck> deck;
   if (!options.dry_run) {
+    require_solver_deck(result, output.meshes.front());
     written = pipeline::write_outputs(result, output, progress);
     if (written.report) {
       const bool is_file = std::ranges::any_of(
@@ -109,6 +94,13 @@ int run(const Options& options) {
     }
     const std::filesystem::path summary = pipeline::file_beside(output.meshes.front(), ".report.json");
     mesh_run.files = written.files;
+    if (result.resolved.solver != study::Solver::none) {
+      Diagnostics assumed;
+      deck = write_solver_deck(result, output.meshes.front(), assumed);
+      if (!options.quiet) print_diagnostics(assumed);
+      result.diagnostics.merge(assumed);
+      for (const std::filesystem::path& file : deck->files) mesh_run.files.push_back(file.string());
+    }
     mesh_run.files.push_back(summary.string());
     if (!options.html.empty()) {
       progress.at("view", 0);
@@ -122,9 +114,9 @@ int run(const Options& options) {
   if (options.json)
     fmt::print("{}\n", report_json(mesh_run));
   else if (!options.quiet)
-    fmt::print("{}{}{}{}", report_text(mesh_run), options.forecast ? forecast_text(mesh_run) : "",
+    fmt::print("{}{}{}{}{}", report_text(mesh_run), options.forecast ? forecast_text(mesh_run) : "",
                options.explain ? explain_text(result, mesh_run.layers) : "",
-               options.quality ? quality_text(mesh_run.quality) : "");
+               options.quality ? quality_text(mesh_run.quality) : "", deck ? run_text(*deck) : "");
   return written.report && !written.report->passed() ? 1 : 0;
 }
 
@@ -136,8 +128,10 @@ Command add_mesh_command(CLI::App& program) {
   command->add_option("board", options->board, "Board file: KiCad .kicad_pcb or native .json; .gz and .xz are unpacked")
       ->required();
   command
-      ->add_option("-o,--output", options->outputs,
-                   "Mesh file; its ending picks the format (.msh, .vtu, .xdmf ...; see 'pcbmesh formats'); repeatable")
+      ->add_option(
+          "-o,--output", options->outputs,
+          "Mesh file; its ending picks the format (.msh, .vtu, .xdmf ...; see 'pcbmesh formats'); repeatable. With --for: a "
+          "folder for mesh and deck")
       ->allow_extra_args(false);
   constexpr const char* output = "Output";
   command->add_flag("--ascii", options->ascii, "Text instead of binary, where the format has both")->group(output);
@@ -190,7 +184,7 @@ Command add_mesh_command(CLI::App& program) {
       "  pcbmesh mesh board.kicad_pcb -o board.msh\n"
       "  pcbmesh mesh board.kicad_pcb --nets /USB_P,/USB_N --frequency 10GHz -o usb.msh -o usb.vtu\n"
       "  pcbmesh mesh board.kicad_pcb --region 10mm,-30mm,25mm,-18mm --hollow GND -o part.msh\n"
-      "  pcbmesh mesh board.kicad_pcb --study study.json --for palace -o usb.msh\n"
+      "  pcbmesh mesh board.kicad_pcb --nets /USB_P,/USB_N --study usb.json --for getdp -o out/\n"
       "  pcbmesh mesh examples/serpentine.json --air 0 --policy minimum --sublayers floor -o serpentine.msh");
   return {command, [options] { return run(*options); }};
 }

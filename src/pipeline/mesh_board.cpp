@@ -13,7 +13,6 @@
 #include "pcbmesh/compose/compose.hpp"
 #include "pcbmesh/extrude/extrude.hpp"
 #include "pcbmesh/layering/choose_layers.hpp"
-#include "pcbmesh/pipeline/solver_rules.hpp"
 
 namespace pcbmesh::pipeline {
 namespace {
@@ -107,7 +106,7 @@ MeshBoardResult mesh_board(const board::Board& board, const study::Study& given,
   if (study.edge_at_copper) options.grading = triangulate::Grading{static_cast<double>(*study.edge_at_copper), study.growth};
   options.seed = study.seed == study::TriangleSeed::hex ? triangulate::Seed::hexagonal : triangulate::Seed::delaunay;
   options.smooth = study.smooth;
-  options.split_sheet_chords = export_rules(study.solver).splits_chords;
+  options.split_sheet_chords = study.solver == study::Solver::palace;
   options.as_in_paper = study.paper_compat;
   triangulate::TriangulateResult planar =
       timed("triangulate", [&] { return triangulate::triangulate(graph.graph, model, options, diagnostics, progress); });
