@@ -115,6 +115,7 @@ void Reader::read_format() {
   if (kind != 0 && kind != 1) source_.fail(fmt::format("file type {} is neither 0 (text) nor 1 (binary)", kind));
   if (data_size != 8) source_.fail(fmt::format("numbers of {} bytes are not read, only of 8", data_size));
   source_.end_line();
+  builder_.set_format(version, kind == 1);
   if (kind == 0) return;
   binary_ = true;
   numbers_ = Numbers(source_, true);

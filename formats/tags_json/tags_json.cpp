@@ -91,6 +91,38 @@ Json touching_nets(const mesh::PrismMesh& mesh) {
   return out;
 }
 
+/// One entry per run of neighbouring slabs that hold cells of the layer.
+Json layers(const mesh::PrismMesh& mesh) {
+  const mesh::LayerPlan& plan = mesh.plan();
+  const auto num_slabs = static_cast<std::size_t>(plan.num_slabs());
+  std::vector<std::vector<bool>> is_in(mesh.layers().size(), std::vector<bool>(num_slabs, false));
+  std::vector<std::int32_t> offsets, triangles;
+  for (std::size_t slab = 0; slab < num_slabs; ++slab) {
+    mesh.group_triangles(static_cast<std::int32_t>(slab), offsets, triangles);
+    for (std::size_t tag = 0; tag < mesh.volume_tags().size(); ++tag)
+      if (offsets[tag + 1] > offsets[tag]) is_in[static_cast<std::size_t>(mesh.volume_tags()[tag].layer)][slab] = true;
+  }
+  const auto z = [&](std::size_t slab) {
+    return plan.z_m()[static_cast<std::size_t>(plan.first_sublayer(static_cast<std::int32_t>(slab)))];
+  };
+  Json out = Json::array();
+  for (std::size_t layer = 0; layer < is_in.size(); ++layer)
+    for (std::size_t slab = 0, end = 0; slab < num_slabs; slab = end + 1) {
+      end = slab;
+      while (end < num_slabs && is_in[layer][end]) ++end;
+      if (end > slab) out.push_back({{"name", mesh.layers()[layer]}, {"z_min_m", z(slab)}, {"z_max_m", z(end)}});
+    }
+  return out;
+}
+
+/// Heights of the levels that carry nodes.
+Json levels(const mesh::PrismMesh& mesh) {
+  Json out = Json::array();
+  for (std::int32_t k = 0; k < mesh.plan().num_levels(); ++k)
+    if (mesh.num_nodes_of_level(k) > 0) out.push_back(mesh.plan().z_m()[static_cast<std::size_t>(k)]);
+  return out;
+}
+
 Json bounding_box(const mesh::PrismMesh& mesh) {
   constexpr double far = std::numeric_limits<double>::infinity();
   std::array<double, 3> min{far, far, far}, max{-far, -far, -far};
@@ -120,6 +152,8 @@ void write_tags(const mesh::PrismMesh& mesh, const std::filesystem::path& file, 
   out["materials"] = materials(mesh);
   out["nets"] = nets(mesh);
   out["touching_nets"] = touching_nets(mesh);
+  out["layers"] = layers(mesh);
+  out["levels_m"] = levels(mesh);
   FileSink sink(file);
   // Net names come from other people's files and need not be UTF-8.
   sink.put(out.dump(1, ' ', false, Json::error_handler_t::replace));

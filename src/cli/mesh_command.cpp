@@ -41,7 +41,8 @@ pipeline::OutputOptions output_options(const Options& options, LengthUnit unit) 
           options.to,
           {!options.ascii, unit, options.msh_version},
           !options.no_check,
-          options.threads};
+          options.threads,
+          options.board};
 }
 
 int run(const Options& options) {
@@ -108,8 +109,9 @@ Command add_mesh_command(CLI::App& program) {
       ->group(output);
   options->study = add_study_options(*command);
   command->footer(
-      "Beside board.msh appear board.tags.json (what each tag means), board.resolved.json (every choice, filled in) and\n"
-      "board.report.json (counts, quality, times, moves, verdict).\n\n"
+      "Beside board.msh appear board.tags.json (what each tag means), board.resolved.json (every choice, filled in),\n"
+      "board.report.json (counts, quality, times, moves, verdict) and board.certificate.json (hashes, checks, volumes;\n"
+      "'pcbmesh check --certificate' compares).\n\n"
       "Examples:\n"
       "  pcbmesh mesh board.kicad_pcb -o board.msh\n"
       "  pcbmesh mesh board.kicad_pcb --nets /USB_P,/USB_N --frequency 10GHz -o usb.msh -o usb.vtu\n"

@@ -8,13 +8,14 @@
 #include "formats/sink/file_sink.hpp"
 #include "formats/tags_json/tags_json.hpp"
 #include "pcbmesh/base/error.hpp"
+#include "pcbmesh/validation/certificate.hpp"
 
 namespace pcbmesh::pipeline {
 namespace {
 
-validation::Report judge(const MeshBoardResult& result, const OutputOptions& options, const std::filesystem::path& tags,
+/// @param expectation  of tags.json; its unit becomes that of the mesh that was judged.
+validation::Report judge(const MeshBoardResult& result, const OutputOptions& options, validation::Expectation& expectation,
                          const Progress& progress) {
-  validation::Expectation expectation = validation::read_expectation(tags.string());
   for (const std::filesystem::path& file : options.meshes) {
     if (formats::find_mesh_format(file, options.format)->read == nullptr) continue;
     progress.at("check", 0);
@@ -78,7 +79,18 @@ OutputResult write_outputs(const MeshBoardResult& result, const OutputOptions& o
   }
   out.files.push_back(tags.string());
   out.files.push_back(study.string());
-  if (options.check) out.report = judge(result, options, tags, progress);
+  if (!options.check) return out;
+  validation::Expectation expectation = validation::read_expectation(tags.string());
+  out.report = judge(result, options, expectation, progress);
+  std::vector<validation::Certificate::File> certified;
+  if (!options.board.empty()) certified.push_back(validation::certified_file("board", options.board));
+  certified.push_back(validation::certified_file("study", study));
+  certified.push_back(validation::certified_file("tags", tags));
+  for (const std::filesystem::path& file : options.meshes) certified.push_back(validation::certified_file("mesh", file));
+  const std::filesystem::path certificate = file_beside(options.meshes.front(), ".certificate.json");
+  write_text_file(certificate,
+                  to_json(validation::certify(*out.report, expectation, expectation.unit_m, std::move(certified))));
+  out.files.push_back(certificate.string());
   return out;
 }
 

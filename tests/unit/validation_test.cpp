@@ -115,7 +115,7 @@ TEST(Check, MatchesFacesAlikeInOnePassOrMany) {
   EXPECT_EQ(2 * usual.num_inner + static_cast<std::int64_t>(usual.boundary.size()), 5 * good.mesh.cells[0].size());
   for (const bool wide : {false, true}) {
     const auto other =
-        checks::match_faces(context, nullptr, {.bytes_per_cell = 1, .min_entries_at_once = 3000, .wide_ids = wide});
+        checks::match_faces(context, nullptr, nullptr, {.bytes_per_cell = 1, .min_entries_at_once = 3000, .wide_ids = wide});
     EXPECT_EQ(other.boundary, usual.boundary);
     EXPECT_EQ(other.num_inner, usual.num_inner);
     EXPECT_EQ(other.untagged.count(), 0);

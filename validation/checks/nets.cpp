@@ -89,7 +89,7 @@ void check_pieces(const Context& context, const NetContacts& nets, CheckLog& log
     const auto num_found = static_cast<std::int64_t>(found.size());
     if (num_found == expected.pieces) continue;
     std::vector<Finding::Place> places;
-    for (std::size_t i = 0; i < found.size() && i < Tally::max_kept; ++i) places.push_back(context.place_of_cell(found[i]));
+    for (std::size_t i = 0; i < found.size() && i < Finding::max_places; ++i) places.push_back(context.place_of_cell(found[i]));
     if (num_found > expected.pieces) {
       log.found(
           "net.open", FindingSeverity::error,
@@ -123,8 +123,9 @@ void check_shorts(const Context& context, const NetContacts& nets, CheckLog& log
     const std::string& b = nets.nets()[static_cast<std::size_t>(pair.second)];
     if (allowed.contains({a, b})) continue;  // names ascend with their indices
     std::vector<Finding::Place> places;
-    for (const std::int64_t half_face : tally.kept()) places.push_back(context.place_of_half_face(half_face));
-    const std::string layer = layer_of(tally.kept().front() >> 3);
+    for (const std::int64_t half_face : tally.kept(Finding::max_places))
+      places.push_back(context.place_of_half_face(half_face));
+    const std::string layer = layer_of(tally.kept(1).front() >> 3);
     const Vector3 at = places.front().at;
     log.found("net.short", FindingSeverity::error,
               fmt::format("copper of nets {} and {} shares {} faces, first on layer {} at ({:.9g}, {:.9g}, {:.9g})", a, b,
