@@ -66,17 +66,6 @@ TEST(Check, KnowsEveryCellKind) {
   EXPECT_EQ(report.findings[0].count, 4);
 }
 
-TEST(Check, PassesAThousandRandomGoodMeshes) {
-  for (std::uint64_t seed = 0; seed < 1000; ++seed) {
-    const CheckCase good = tests::build_block(tests::random_plan(seed));
-    const Report report = check(good.mesh, &good.expectation, {.num_threads = 1});
-    for (const Finding& finding : report.findings) {
-      // Random voids may well touch along an edge only.
-      ASSERT_EQ(finding.code, "boundary.pinched") << "seed " << seed << "\n" << to_text(report);
-    }
-  }
-}
-
 TEST(Check, SameReportForAnyNumberOfThreads) {
   tests::BlockPlan plan = tests::board_plan();
   plan.nx = plan.ny = 60;

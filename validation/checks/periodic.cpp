@@ -17,7 +17,12 @@ class PlaceTable {
  public:
   PlaceTable(const Context& context, double tolerance) : context_(context), tolerance_(tolerance), cell_(64 * tolerance) {}
 
-  void add(std::int64_t node) { nodes_[key_of(cell_of(at(node)))].push_back(node); }
+  /// Nodes of one place stand for each other: a crack that reaches the side is another check's business.
+  [[nodiscard]] std::int64_t add(std::int64_t node) {
+    if (const std::int64_t known = find(at(node)); known >= 0) return known;
+    nodes_[key_of(cell_of(at(node)))].push_back(node);
+    return node;
+  }
   /// -1 if there is none.
   [[nodiscard]] std::int64_t find(const Vector3& place) const {
     const auto low = cell_of({place[0] - tolerance_, place[1] - tolerance_, place[2] - tolerance_}),
@@ -83,12 +88,11 @@ void check_pair(const Context& context, const Expectation::Periodic& pair, Check
   for (double& x : shift) x /= context.expectation->unit_m;
   PlaceTable table(context, std::max(context.tolerance, 1e-300));
   std::vector<FaceKey> keys;
-  std::vector<std::uint8_t> is_known(context.mesh.nodes.size(), 0);
   for (const std::int64_t face : faces_b) {
-    keys.push_back(sorted_key(context.corners_of_face(face)));
-    for (const std::int64_t node : context.corners_of_face(face)) {
-      if (std::exchange(is_known[static_cast<std::size_t>(node)], std::uint8_t{1}) == 0) table.add(node);
-    }
+    const auto corners = context.corners_of_face(face);
+    std::array<std::int64_t, 4> ids{};
+    for (std::size_t i = 0; i < corners.size(); ++i) ids[i] = table.add(corners[i]);
+    keys.push_back(sorted_key(std::span<const std::int64_t>(ids).first(corners.size())));
   }
   std::sort(keys.begin(), keys.end());
   Tally unmatched;
