@@ -14,6 +14,7 @@
 #include "formats/syntax/input_file.hpp"
 #include "formats/vtu/format.hpp"
 #include "pcbmesh/base/error.hpp"
+#include "pcbmesh/mesh/prism_source.hpp"
 
 namespace pcbmesh::formats {
 namespace {
@@ -134,6 +135,12 @@ ReadBoardResult read_board(const std::filesystem::path& file, std::string_view f
 
 void write_mesh(const mesh::PrismMesh& mesh, const std::filesystem::path& file, const WriteMeshOptions& options,
                 std::string_view format, const Progress& progress) {
+  mesh::PrismSource source(mesh);
+  write_mesh(source, file, options, format, progress);
+}
+
+void write_mesh(mesh::MeshSource& source, const std::filesystem::path& file, const WriteMeshOptions& options,
+                std::string_view format, const Progress& progress) {
   progress.check();
   const MeshFormat& chosen = mesh_format_for(file, format, ErrorCode::usage);
   // Nothing is packed on writing: a name that promises it would lie.
@@ -145,7 +152,7 @@ void write_mesh(const mesh::PrismMesh& mesh, const std::filesystem::path& file, 
     throw Error(ErrorCode::usage,
                 fmt::format("{} is not written, only read; these are: {}", chosen.name, names_with(&MeshFormat::write)),
                 {.file = file.string()});
-  chosen.write(mesh, file, options, progress);
+  chosen.write(source, file, options, progress);
 }
 
 mesh::MeshData read_mesh(const std::filesystem::path& file, std::string_view format, const Progress& progress) {

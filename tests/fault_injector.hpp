@@ -294,7 +294,7 @@ class Damage {
         group.area_m2 += area(corners(FaceAt{b, i}));
       }
     }
-    c.expectation.periodic = {{"xmin", "xmax", {n * 1e-3, 0, 0}}};
+    c.expectation.periodic = {{"xmin", "xmax", std::nullopt}};
   }
   double area(const std::vector<std::int64_t>& ids) {
     double sum = 0;

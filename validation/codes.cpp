@@ -142,7 +142,7 @@ constexpr CheckCode table[] = {
      "a level without nodes, or a sub-layer without any cell of its layer",
      "cells were lost, or the files are from different runs"},
     {"periodic.unmatched", FindingSeverity::error, "Periodic",
-     "a face of a periodic group has no partner of the same corners in the other group, at the shift of tags.json",
+     "a face of a periodic group has no partner of the same corners in the other group",
      "mesh both sides alike"},
     {"limit.needle", FindingSeverity::error, "Limits", "the smallest angle in a face of a cell is below min_face_angle_deg",
      "raise the angle bound of the mesher, or its tolerance where features nearly touch"},

@@ -35,6 +35,14 @@ void read_volumes(const Field& list, Expectation& out) {
   }
 }
 
+/// Groups that name each other as partners are one pair.
+void read_partner(const Field& face, const std::string& name, Expectation& out) {
+  const std::string partner = face["partner"].text_or_empty();
+  if (partner.empty()) return;
+  const auto is_same = [&](const Expectation::Periodic& pair) { return pair.a == partner && pair.b == name; };
+  if (std::ranges::none_of(out.periodic, is_same)) out.periodic.push_back({name, partner, std::nullopt});
+}
+
 void read_faces(const Field& list, Expectation& out) {
   std::set<std::int32_t> seen;
   for (const Field& field : list.list()) {
@@ -45,41 +53,32 @@ void read_faces(const Field& list, Expectation& out) {
     constexpr std::string_view kinds[] = {"outer", "conductor", "sheet", "port", "wave_port", "interface"};
     if (std::ranges::find(kinds, face.kind) == std::end(kinds))
       field["kind"].fail("one of outer, conductor, sheet, port, wave_port, interface");
-    face.outer = face.kind == "outer" || face.kind == "wave_port";
+    face.outer = field["inner"].is_absent() ? face.kind == "outer" || face.kind == "wave_port" : !field["inner"].flag();
+    read_partner(field, face.name, out);
     face.num_faces = field["num_faces"].count_or_unknown();
     face.area_m2 = field["area_m2"].measure_or_unknown();
     out.faces.push_back(std::move(face));
   }
 }
 
-std::array<double, 3> read_vector(const Field& field) {
-  const std::vector<Field> list = field.list();
-  if (list.size() != 3) field.fail("a list of three numbers");
-  return {list[0].number(), list[1].number(), list[2].number()};
-}
-
 void read_layers(const Field& top, Expectation& out) {
-  if (const Field layers = top["layers"]; !layers.is_absent()) {
-    for (const Field& field : layers.list()) {
-      Expectation::Layer layer{field["name"].text(), field["z_min_m"].number(), field["z_max_m"].number()};
-      if (!(layer.z_min_m <= layer.z_max_m)) field["z_max_m"].fail("at least z_min_m");
-      out.layers.push_back(std::move(layer));
+  const Field layers = top["layers"];
+  if (layers.is_absent()) return;
+  std::set<double> levels;
+  for (const Field& field : layers.list()) {
+    Expectation::Layer layer{field["name"].text(), 0, 0};
+    std::vector<double> mine;
+    for (const Field& level : field["levels_m"].list()) {
+      mine.push_back(level.number());
+      if (mine.size() > 1 && !(mine[mine.size() - 2] < mine.back())) level.fail("above the level before it");
     }
+    if (mine.size() < 2) field["levels_m"].fail("at least two heights");
+    layer.z_min_m = mine.front();
+    layer.z_max_m = mine.back();
+    levels.insert(mine.begin(), mine.end());
+    out.layers.push_back(std::move(layer));
   }
-  if (const Field levels = top["levels_m"]; !levels.is_absent()) {
-    for (const Field& field : levels.list()) {
-      out.levels_m.push_back(field.number());
-      if (out.levels_m.size() > 1 && !(out.levels_m[out.levels_m.size() - 2] < out.levels_m.back()))
-        field.fail("above the level before it");
-    }
-  }
-}
-
-void read_periodic(const Field& top, Expectation& out) {
-  const Field pairs = top["periodic"];
-  if (pairs.is_absent()) return;
-  for (const Field& field : pairs.list())
-    out.periodic.push_back({field["a"].text(), field["b"].text(), read_vector(field["shift_m"])});
+  out.levels_m.assign(levels.begin(), levels.end());
 }
 
 void read_nets(const Field& top, Expectation& out) {
@@ -112,7 +111,6 @@ Expectation read_expectation(const std::string& file) {
   read_faces(top["faces"], out);
   read_nets(top, out);
   read_layers(top, out);
-  read_periodic(top, out);
   return out;
 }
 

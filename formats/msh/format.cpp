@@ -14,16 +14,15 @@ namespace {
 
 constexpr std::array<std::string_view, 1> extensions{".msh"};
 
-void write(const mesh::PrismMesh& mesh, const std::filesystem::path& file, const WriteMeshOptions& options,
+void write(mesh::MeshSource& source, const std::filesystem::path& file, const WriteMeshOptions& options,
            const Progress& progress) {
   const bool is_41 = options.version.empty() || options.version == "4.1" || options.version == "4";
   if (!is_41 && options.version != "2.2" && options.version != "2")
     throw Error(ErrorCode::usage, fmt::format("there is no MSH version '{}'; use 4.1 or 2.2", options.version),
                 {.file = file.string()});
-  ElementStream elements(mesh);
-  if (!is_41) require_fits_22(elements, file);
-  FileSink sink(file, (is_41 ? expected_bytes_41 : expected_bytes_22)(elements, options.binary));
-  (is_41 ? write_41 : write_22)({elements, sink, options.binary, 1.0 / metres_per(options.unit), progress});
+  if (!is_41) require_fits_22(source, file);
+  FileSink sink(file, (is_41 ? expected_bytes_41 : expected_bytes_22)(source, options.binary));
+  (is_41 ? write_41 : write_22)({source, sink, options.binary, source.unit_m() / metres_per(options.unit), progress});
   progress.check();
   sink.commit();
 }

@@ -23,7 +23,7 @@ void require_32_bit(std::int64_t count, std::string_view what, const std::filesy
 void write_nodes(const WriteJob& job, Meter& meter) {
   FileSink& sink = job.sink;
   sink.put("$Nodes\n");
-  sink.put_number(job.elements.mesh().num_nodes());
+  sink.put_number(job.source.num_nodes());
   sink.put("\n");
   visit_nodes(job, [&](std::int64_t first, std::span<const std::array<double, 3>> nodes) {
     std::int64_t number = first + 1;
@@ -67,26 +67,40 @@ void write_rows_of(FileSink& sink, std::int32_t tag, std::int64_t id, std::span<
   sink.advance(num_rows * sizeof fields);
 }
 
-void write_rows_binary(FileSink& sink, const ElementBlock& block, std::int64_t id, std::span<const std::int64_t> corners) {
-  switch (block.kind) {
-    case ElementKind::triangle:
-      return write_rows_of<3>(sink, block.tag, id, corners);
-    case ElementKind::quadrangle:
-      return write_rows_of<4>(sink, block.tag, id, corners);
-    case ElementKind::wedge:
-      return write_rows_of<6>(sink, block.tag, id, corners);
+void write_rows_binary(FileSink& sink, const mesh::ElementBlock& block, std::int64_t id, std::span<const std::int64_t> nodes) {
+  switch (mesh::nodes_of(block.kind)) {
+    case 3:
+      return write_rows_of<3>(sink, block.tag, id, nodes);
+    case 4:
+      return write_rows_of<4>(sink, block.tag, id, nodes);
+    case 5:
+      return write_rows_of<5>(sink, block.tag, id, nodes);
+    case 6:
+      return write_rows_of<6>(sink, block.tag, id, nodes);
+    case 8:
+      return write_rows_of<8>(sink, block.tag, id, nodes);
+    case 9:
+      return write_rows_of<9>(sink, block.tag, id, nodes);
+    case 10:
+      return write_rows_of<10>(sink, block.tag, id, nodes);
+    case 15:
+      return write_rows_of<15>(sink, block.tag, id, nodes);
+    case 18:
+      return write_rows_of<18>(sink, block.tag, id, nodes);
+    default:
+      report_bug("known width of an element", __FILE__, __LINE__);
   }
 }
 
-void write_rows_text(FileSink& sink, const ElementBlock& block, std::int64_t id, std::span<const std::int64_t> corners) {
-  const auto width = static_cast<std::size_t>(num_corners(block.kind));
-  const std::string middle = fmt::format(" {} 2 {} {}", static_cast<std::int32_t>(block.kind), block.tag, block.tag);
-  for (std::size_t at = 0; at < corners.size(); at += width) {
+void write_rows_text(FileSink& sink, const mesh::ElementBlock& block, std::int64_t id, std::span<const std::int64_t> nodes) {
+  const auto width = static_cast<std::size_t>(mesh::nodes_of(block.kind));
+  const std::string middle = fmt::format(" {} 2 {} {}", gmsh_type(block.kind), block.tag, block.tag);
+  for (std::size_t at = 0; at < nodes.size(); at += width) {
     sink.put_number(id++);
     sink.put(middle);
     for (std::size_t i = 0; i < width; ++i) {
       sink.put(" ");
-      sink.put_number(corners[at + i] + 1);
+      sink.put_number(nodes[at + i] + 1);
     }
     sink.put("\n");
   }
@@ -95,16 +109,16 @@ void write_rows_text(FileSink& sink, const ElementBlock& block, std::int64_t id,
 void write_elements(const WriteJob& job, Meter& meter) {
   FileSink& sink = job.sink;
   sink.put("$Elements\n");
-  sink.put_number(job.elements.num_elements());
+  sink.put_number(num_elements(job.source));
   sink.put("\n");
   std::int64_t id = 1;
-  for (const ElementBlock& block : job.elements.blocks()) {
+  for (std::size_t i = 0; i < job.source.blocks().size(); ++i) {
+    const mesh::ElementBlock& block = job.source.blocks()[i];
     if (job.binary)  // one header for the whole block: 12 bytes per element less than a header each
-      for (const std::int32_t field : {static_cast<std::int32_t>(block.kind), static_cast<std::int32_t>(block.count), 2})
-        sink.put_raw(field);
-    job.elements.visit(block, [&](std::span<const std::int64_t> corners) {
-      (job.binary ? write_rows_binary : write_rows_text)(sink, block, id, corners);
-      const std::int64_t count = static_cast<std::int64_t>(corners.size()) / num_corners(block.kind);
+      for (const std::int32_t field : {gmsh_type(block.kind), static_cast<std::int32_t>(block.count), 2}) sink.put_raw(field);
+    job.source.visit(i, [&](std::span<const std::int64_t> nodes) {
+      (job.binary ? write_rows_binary : write_rows_text)(sink, block, id, nodes);
+      const std::int64_t count = static_cast<std::int64_t>(nodes.size()) / mesh::nodes_of(block.kind);
       id += count;
       meter.add(count);
     });
@@ -114,21 +128,21 @@ void write_elements(const WriteJob& job, Meter& meter) {
 
 }  // namespace
 
-void require_fits_22(const ElementStream& elements, const std::filesystem::path& file) {
-  require_32_bit(elements.mesh().num_nodes(), "nodes", file);
-  require_32_bit(elements.num_elements(), "elements", file);
+void require_fits_22(const mesh::MeshSource& source, const std::filesystem::path& file) {
+  require_32_bit(source.num_nodes(), "nodes", file);
+  require_32_bit(num_elements(source), "elements", file);
 }
 
-std::uint64_t expected_bytes_22(const ElementStream& elements, bool binary) {
+std::uint64_t expected_bytes_22(const mesh::MeshSource& source, bool binary) {
   if (!binary) return 0;
-  std::uint64_t bytes = static_cast<std::uint64_t>(elements.mesh().num_nodes()) * 28;
-  for (const ElementBlock& block : elements.blocks())
-    bytes += static_cast<std::uint64_t>(block.count) * static_cast<std::uint64_t>(12 + 4 * num_corners(block.kind));
+  std::uint64_t bytes = static_cast<std::uint64_t>(source.num_nodes()) * 28;
+  for (const mesh::ElementBlock& block : source.blocks())
+    bytes += static_cast<std::uint64_t>(block.count) * static_cast<std::uint64_t>(12 + 4 * mesh::nodes_of(block.kind));
   return bytes;
 }
 
 void write_22(const WriteJob& job) {
-  Meter meter(job.progress, job.elements.mesh().num_nodes() + job.elements.num_elements());
+  Meter meter(job.progress, job.source.num_nodes() + num_elements(job.source));
   write_opening(job, "2.2");
   write_nodes(job, meter);
   write_elements(job, meter);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "formats/msh/write_msh.hpp"
+#include "pcbmesh/base/error.hpp"
 
 namespace pcbmesh::formats::msh {
 namespace {
@@ -29,13 +30,13 @@ class Fields {
 void write_entities(const WriteJob& job) {
   Fields out(job);
   job.sink.put("$Entities\n");
-  const auto groups = job.elements.groups();
-  const auto num_surfaces = std::ranges::count(groups, 2, &Group::dimension);
+  const auto groups = job.source.groups();
+  const auto num_surfaces = std::ranges::count(groups, 2, &mesh::ElementGroup::dimension);
   for (const std::int64_t count : {std::int64_t{0}, std::int64_t{0}, static_cast<std::int64_t>(num_surfaces),
                                    static_cast<std::int64_t>(groups.size()) - num_surfaces})
     out.size(count);
   out.end_line();
-  for (const Group& group : groups) {  // faces stand before volumes, as the section wants it
+  for (const mesh::ElementGroup& group : groups) {  // faces stand before volumes, as the section wants it
     out.integer(group.tag);
     for (const auto& corner : {group.extent.min, group.extent.max})
       for (const double x : corner) out.real(x * job.scale);
@@ -69,15 +70,14 @@ void write_node_tags(const WriteJob& job, std::int64_t num_nodes) {
 void write_nodes(const WriteJob& job, Meter& meter) {
   Fields out(job);
   FileSink& sink = job.sink;
-  const mesh::PrismMesh& mesh = job.elements.mesh();
-  const std::int64_t num_nodes = mesh.num_nodes();
+  const std::int64_t num_nodes = job.source.num_nodes();
   sink.put("$Nodes\n");
   for (const std::int64_t count : {std::int64_t{num_nodes > 0}, num_nodes, std::int64_t{num_nodes > 0}, num_nodes})
     out.size(count);
   out.end_line();
   if (num_nodes > 0) {
-    out.integer(3);
-    out.integer(mesh.volume_tags().front().id);
+    out.integer(job.source.groups().back().dimension);
+    out.integer(job.source.groups().back().tag);
     out.integer(0);  // no parametric coordinates
     out.size(num_nodes);
     out.end_line();
@@ -124,39 +124,55 @@ void write_rows_text(FileSink& sink, std::size_t width, std::int64_t tag, std::s
   }
 }
 
-void write_rows(const WriteJob& job, ElementKind kind, std::int64_t tag, std::span<const std::int64_t> corners) {
-  if (!job.binary) return write_rows_text(job.sink, static_cast<std::size_t>(num_corners(kind)), tag, corners);
-  switch (kind) {
-    case ElementKind::triangle:
-      return write_rows_binary<3>(job.sink, tag, corners);
-    case ElementKind::quadrangle:
-      return write_rows_binary<4>(job.sink, tag, corners);
-    case ElementKind::wedge:
-      return write_rows_binary<6>(job.sink, tag, corners);
+void write_rows(const WriteJob& job, mesh::ElementKind kind, std::int64_t tag, std::span<const std::int64_t> nodes) {
+  const int width = mesh::nodes_of(kind);
+  if (!job.binary) return write_rows_text(job.sink, static_cast<std::size_t>(width), tag, nodes);
+  switch (width) {
+    case 3:
+      return write_rows_binary<3>(job.sink, tag, nodes);
+    case 4:
+      return write_rows_binary<4>(job.sink, tag, nodes);
+    case 5:
+      return write_rows_binary<5>(job.sink, tag, nodes);
+    case 6:
+      return write_rows_binary<6>(job.sink, tag, nodes);
+    case 8:
+      return write_rows_binary<8>(job.sink, tag, nodes);
+    case 9:
+      return write_rows_binary<9>(job.sink, tag, nodes);
+    case 10:
+      return write_rows_binary<10>(job.sink, tag, nodes);
+    case 15:
+      return write_rows_binary<15>(job.sink, tag, nodes);
+    case 18:
+      return write_rows_binary<18>(job.sink, tag, nodes);
+    default:
+      report_bug("known width of an element", __FILE__, __LINE__);
   }
 }
 
 void write_elements(const WriteJob& job, Meter& meter) {
   Fields out(job);
-  const std::int64_t num_elements = job.elements.num_elements();
+  const std::int64_t count = num_elements(job.source);
   job.sink.put("$Elements\n");
-  for (const std::int64_t count :
-       {static_cast<std::int64_t>(job.elements.blocks().size()), num_elements, std::int64_t{num_elements > 0}, num_elements})
-    out.size(count);
+  for (const std::int64_t field :
+       {static_cast<std::int64_t>(job.source.blocks().size()), count, std::int64_t{count > 0}, count})
+    out.size(field);
   out.end_line();
   std::int64_t tag = 1;
-  for (const ElementBlock& block : job.elements.blocks()) {
-    out.integer(block.dimension());
+  for (std::size_t i = 0; i < job.source.blocks().size(); ++i) {
+    const mesh::ElementBlock& block = job.source.blocks()[i];
+    out.integer(mesh::dimension_of(block.kind));
     out.integer(block.tag);
-    out.integer(static_cast<std::int32_t>(block.kind));
+    out.integer(gmsh_type(block.kind));
     out.size(block.count);
     out.end_line();
-    const auto width = static_cast<std::size_t>(num_corners(block.kind));
-    job.elements.visit(block, [&](std::span<const std::int64_t> corners) {
-      write_rows(job, block.kind, tag, corners);
-      const auto count = static_cast<std::int64_t>(corners.size() / width);
-      tag += count;
-      meter.add(count);
+    const auto width = static_cast<std::size_t>(mesh::nodes_of(block.kind));
+    job.source.visit(i, [&](std::span<const std::int64_t> nodes) {
+      write_rows(job, block.kind, tag, nodes);
+      const auto rows = static_cast<std::int64_t>(nodes.size() / width);
+      tag += rows;
+      meter.add(rows);
     });
   }
   job.sink.put(job.binary ? "\n$EndElements\n" : "$EndElements\n");
@@ -164,16 +180,16 @@ void write_elements(const WriteJob& job, Meter& meter) {
 
 }  // namespace
 
-std::uint64_t expected_bytes_41(const ElementStream& elements, bool binary) {
+std::uint64_t expected_bytes_41(const mesh::MeshSource& source, bool binary) {
   if (!binary) return 0;
-  std::uint64_t bytes = static_cast<std::uint64_t>(elements.mesh().num_nodes()) * 32;
-  for (const ElementBlock& block : elements.blocks())
-    bytes += static_cast<std::uint64_t>(block.count) * static_cast<std::uint64_t>(8 + 8 * num_corners(block.kind));
+  std::uint64_t bytes = static_cast<std::uint64_t>(source.num_nodes()) * 32;
+  for (const mesh::ElementBlock& block : source.blocks())
+    bytes += static_cast<std::uint64_t>(block.count) * static_cast<std::uint64_t>(8 + 8 * mesh::nodes_of(block.kind));
   return bytes;
 }
 
 void write_41(const WriteJob& job) {
-  Meter meter(job.progress, job.elements.mesh().num_nodes() + job.elements.num_elements());
+  Meter meter(job.progress, job.source.num_nodes() + num_elements(job.source));
   write_opening(job, "4.1");
   write_entities(job);
   write_nodes(job, meter);

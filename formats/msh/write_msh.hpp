@@ -11,19 +11,25 @@
 #include <string_view>
 #include <vector>
 
-#include "formats/msh/element_stream.hpp"
 #include "formats/sink/file_sink.hpp"
 #include "pcbmesh/base/progress.hpp"
 #include "pcbmesh/formats/registry.hpp"
+#include "pcbmesh/mesh/mesh_source.hpp"
 
 namespace pcbmesh::formats::msh {
 
+/// Gmsh's number of an element kind.
+[[nodiscard]] constexpr std::int32_t gmsh_type(mesh::ElementKind kind) {
+  constexpr std::int32_t types[] = {2, 3, 4, 7, 6, 5, 9, 16, 10, 11, 18, 13};
+  return types[static_cast<int>(kind)];
+}
+
 /// Everything the two versions' writers need; one per file.
 struct WriteJob {
-  ElementStream& elements;
+  mesh::MeshSource& source;
   FileSink& sink;
   bool binary = true;
-  double scale = 1;  ///< written units per metre
+  double scale = 1;  ///< written units per unit of the source
   const Progress& progress;
 };
 
@@ -35,11 +41,14 @@ void write_41(const WriteJob& job);
 void write_22(const WriteJob& job);
 
 /// @throws Error format_limit (703) beyond 2^31 - 1 nodes or elements.
-void require_fits_22(const ElementStream& elements, const std::filesystem::path& file);
+void require_fits_22(const mesh::MeshSource& source, const std::filesystem::path& file);
 
 /// Size of the file in bytes but for its few kB of headers; 0 for text, whose size nobody knows before.
-[[nodiscard]] std::uint64_t expected_bytes_41(const ElementStream& elements, bool binary);
-[[nodiscard]] std::uint64_t expected_bytes_22(const ElementStream& elements, bool binary);
+[[nodiscard]] std::uint64_t expected_bytes_41(const mesh::MeshSource& source, bool binary);
+[[nodiscard]] std::uint64_t expected_bytes_22(const mesh::MeshSource& source, bool binary);
+
+/// Faces and cells together.
+[[nodiscard]] std::int64_t num_elements(const mesh::MeshSource& source);
 
 /// "$MeshFormat" and "$PhysicalNames", alike in both versions. `version` as the file shall say it.
 void write_opening(const WriteJob& job, std::string_view version);

@@ -13,9 +13,9 @@ void write_opening(const WriteJob& job, std::string_view version) {
     sink.put("\n");
   }
   sink.put("$EndMeshFormat\n$PhysicalNames\n");
-  sink.put_number(job.elements.groups().size());
+  sink.put_number(job.source.groups().size());
   sink.put("\n");
-  for (const Group& group : job.elements.groups()) {
+  for (const mesh::ElementGroup& group : job.source.groups()) {
     sink.put_number(group.dimension);
     sink.put(" ");
     sink.put_number(group.tag);
@@ -26,13 +26,16 @@ void write_opening(const WriteJob& job, std::string_view version) {
   sink.put("$EndPhysicalNames\n");
 }
 
+std::int64_t num_elements(const mesh::MeshSource& source) {
+  return source.num_elements(2) + source.num_elements(3);
+}
+
 void visit_nodes(const WriteJob& job, const NodeVisit& visit) {
-  const mesh::PrismMesh& mesh = job.elements.mesh();
   constexpr std::int64_t block = 1024;
   std::vector<std::array<double, 3>> nodes(block);
-  for (std::int64_t first = 0; first < mesh.num_nodes(); first += block) {
-    const auto part = std::span(nodes).first(static_cast<std::size_t>(std::min(block, mesh.num_nodes() - first)));
-    mesh.fill_nodes(first, part);
+  for (std::int64_t first = 0; first < job.source.num_nodes(); first += block) {
+    const auto part = std::span(nodes).first(static_cast<std::size_t>(std::min(block, job.source.num_nodes() - first)));
+    job.source.fill_nodes(first, part);
     if (job.scale != 1)
       for (std::array<double, 3>& node : part)
         for (double& x : node) x *= job.scale;

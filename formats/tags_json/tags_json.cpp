@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "formats/sink/file_sink.hpp"
-#include "formats/tags_json/group_names.hpp"
+#include "pcbmesh/mesh/group_names.hpp"
 
 namespace pcbmesh::formats::tags_json {
 namespace {
@@ -22,11 +22,16 @@ Json net_or_null(const mesh::PrismMesh& mesh, std::int32_t net) {
   return net < 0 ? Json(nullptr) : Json(mesh.nets()[static_cast<std::size_t>(net)]);
 }
 
+template <class NameOf>
+Json entry_or_null(std::int32_t index, NameOf name_of) {
+  return index < 0 ? Json(nullptr) : Json(name_of(static_cast<std::size_t>(index)));
+}
+
 template <class Tags>
 std::vector<std::string> names_of(const Tags& tags) {
   std::vector<std::string> names;
   for (const auto& tag : tags) names.push_back(tag.name);
-  return group_names(names);
+  return mesh::group_names(names);
 }
 
 Json volumes(const mesh::PrismMesh& mesh) {
@@ -67,10 +72,55 @@ Json faces(const mesh::PrismMesh& mesh) {
     out.push_back({{"id", tag.id},
                    {"dimension", 2},
                    {"name", names[i]},
-                   {"kind", tag.kind == mesh::FaceTagKind::outer ? "outer" : "conductor"},
+                   {"kind", mesh::name_of(tag.kind)},
+                   {"inner", tag.is_inner},
                    {"net", net_or_null(mesh, tag.net)},
+                   {"condition", mesh::name_of(tag.condition)},
+                   {"impedance_ohm", tag.impedance_ohm > 0 ? Json(tag.impedance_ohm) : Json(nullptr)},
+                   {"material", entry_or_null(tag.material, [&](std::size_t m) { return mesh.materials()[m].name; })},
+                   {"thickness_m", tag.thickness_m > 0 ? Json(tag.thickness_m) : Json(nullptr)},
+                   {"port", entry_or_null(tag.port, [&](std::size_t p) { return mesh.ports()[p].name; })},
+                   {"partner", entry_or_null(tag.partner, [&](std::size_t f) { return names[f]; })},
                    {"num_faces", tag.num_triangles + tag.num_quads},
                    {"area_m2", tag.area_m2}});
+  }
+  return out;
+}
+
+Json ports(const mesh::PrismMesh& mesh) {
+  Json out = Json::array();
+  for (const mesh::Port& port : mesh.ports())
+    out.push_back({{"name", port.name},
+                   {"kind", port.kind == mesh::PortKind::lumped ? "lumped" : "wave"},
+                   {"impedance_ohm", port.impedance_ohm},
+                   {"excited", port.is_excited},
+                   {"direction", port.direction},
+                   {"length_m", port.length_m},
+                   {"width_m", port.width_m},
+                   {"positive_net", net_or_null(mesh, port.positive_net)},
+                   {"negative_net", net_or_null(mesh, port.negative_net)},
+                   {"at_m", port.at_m}});
+  return out;
+}
+
+/// Height of each layer; the z levels of all its sub-layers.
+Json layers(const mesh::PrismMesh& mesh) {
+  const mesh::LayerPlan& plan = mesh.plan();
+  // A layer is one or several adjacent slabs; the slabs of a volume tag say which.
+  std::vector<std::int32_t> layer_of_slab(static_cast<std::size_t>(plan.num_slabs()), -1);
+  for (std::int32_t t = 0; t < mesh.planar().num_triangles(); ++t)
+    for (std::int32_t slab = 0; slab < plan.num_slabs(); ++slab)
+      if (const std::int32_t tag = mesh.tag_of(slab, t); tag >= 0)
+        layer_of_slab[static_cast<std::size_t>(slab)] = mesh.volume_tags()[static_cast<std::size_t>(tag)].layer;
+  Json out = Json::array();
+  for (std::size_t layer = 0; layer < mesh.layers().size(); ++layer) {
+    Json levels = Json::array();
+    for (std::int32_t slab = 0; slab < plan.num_slabs(); ++slab) {
+      if (layer_of_slab[static_cast<std::size_t>(slab)] != static_cast<std::int32_t>(layer)) continue;
+      for (std::int32_t k = plan.first_sublayer(slab) + (levels.empty() ? 0 : 1); k <= plan.first_sublayer(slab + 1); ++k)
+        levels.push_back(plan.z_m()[static_cast<std::size_t>(k)]);
+    }
+    if (!levels.empty()) out.push_back({{"name", mesh.layers()[layer]}, {"levels_m", std::move(levels)}});
   }
   return out;
 }
@@ -88,38 +138,6 @@ Json nets(const mesh::PrismMesh& mesh) {
 Json touching_nets(const mesh::PrismMesh& mesh) {
   Json out = Json::array();
   for (const auto& [a, b] : mesh.touching_nets()) out.push_back({net_or_null(mesh, a), net_or_null(mesh, b)});
-  return out;
-}
-
-/// One entry per run of neighbouring slabs that hold cells of the layer.
-Json layers(const mesh::PrismMesh& mesh) {
-  const mesh::LayerPlan& plan = mesh.plan();
-  const auto num_slabs = static_cast<std::size_t>(plan.num_slabs());
-  std::vector<std::vector<bool>> is_in(mesh.layers().size(), std::vector<bool>(num_slabs, false));
-  std::vector<std::int32_t> offsets, triangles;
-  for (std::size_t slab = 0; slab < num_slabs; ++slab) {
-    mesh.group_triangles(static_cast<std::int32_t>(slab), offsets, triangles);
-    for (std::size_t tag = 0; tag < mesh.volume_tags().size(); ++tag)
-      if (offsets[tag + 1] > offsets[tag]) is_in[static_cast<std::size_t>(mesh.volume_tags()[tag].layer)][slab] = true;
-  }
-  const auto z = [&](std::size_t slab) {
-    return plan.z_m()[static_cast<std::size_t>(plan.first_sublayer(static_cast<std::int32_t>(slab)))];
-  };
-  Json out = Json::array();
-  for (std::size_t layer = 0; layer < is_in.size(); ++layer)
-    for (std::size_t slab = 0, end = 0; slab < num_slabs; slab = end + 1) {
-      end = slab;
-      while (end < num_slabs && is_in[layer][end]) ++end;
-      if (end > slab) out.push_back({{"name", mesh.layers()[layer]}, {"z_min_m", z(slab)}, {"z_max_m", z(end)}});
-    }
-  return out;
-}
-
-/// Heights of the levels that carry nodes.
-Json levels(const mesh::PrismMesh& mesh) {
-  Json out = Json::array();
-  for (std::int32_t k = 0; k < mesh.plan().num_levels(); ++k)
-    if (mesh.num_nodes_of_level(k) > 0) out.push_back(mesh.plan().z_m()[static_cast<std::size_t>(k)]);
   return out;
 }
 
@@ -147,13 +165,13 @@ void write_tags(const mesh::PrismMesh& mesh, const std::filesystem::path& file, 
   out["schema_version"] = schema_version;
   out["unit_m"] = metres_per(unit);
   out["bounding_box_m"] = bounding_box(mesh);
+  out["layers"] = layers(mesh);
   out["volumes"] = volumes(mesh);
   out["faces"] = faces(mesh);
+  out["ports"] = ports(mesh);
   out["materials"] = materials(mesh);
   out["nets"] = nets(mesh);
   out["touching_nets"] = touching_nets(mesh);
-  out["layers"] = layers(mesh);
-  out["levels_m"] = levels(mesh);
   FileSink sink(file);
   // Net names come from other people's files and need not be UTF-8.
   sink.put(out.dump(1, ' ', false, Json::error_handler_t::replace));

@@ -168,8 +168,10 @@ void Writer::write() {
   sink_.put("\n </AppendedData>\n</VTKFile>\n");
 }
 
-void write(const mesh::PrismMesh& mesh, const std::filesystem::path& file, const WriteMeshOptions& options,
+void write(mesh::MeshSource& source, const std::filesystem::path& file, const WriteMeshOptions& options,
            const Progress& progress) {
+  if (source.prisms() == nullptr) throw Error(ErrorCode::format_limit, "VTU holds prisms only", {.file = file.string()});
+  const mesh::PrismMesh& mesh = *source.prisms();
   const Array last = arrays_of(mesh.num_nodes(), mesh.num_prisms()).back();
   FileSink sink(file, static_cast<std::uint64_t>(last.offset + last.num_bytes));
   Writer(mesh, sink, 1.0 / metres_per(options.unit), progress).write();

@@ -33,6 +33,16 @@ std::int32_t block_of(const std::vector<std::int64_t>& starts, std::int64_t id) 
 
 }  // namespace
 
+std::string_view name_of(FaceTagKind kind) {
+  constexpr std::string_view names[] = {"outer", "conductor", "sheet", "port", "wave_port", "interface"};
+  return names[static_cast<std::size_t>(kind)];
+}
+
+std::string_view name_of(BoundaryCondition condition) {
+  constexpr std::string_view names[] = {"none", "absorbing", "pec", "pmc", "impedance", "conductor", "port", "periodic"};
+  return names[static_cast<std::size_t>(condition)];
+}
+
 inline bool PrismMesh::Mask::has(std::int32_t i) const {
   return is_full() || ((words[index(i) / 64] >> (index(i) % 64)) & 1U) != 0;
 }
@@ -154,11 +164,11 @@ const PrismMesh::Mask& PrismMesh::sublayer_mask(std::int32_t sublayer) const {
   return (*masks_)[index(mask_of_sublayer_[index(sublayer)])];
 }
 
-std::int64_t PrismMesh::num_boundary_triangles() const {
+std::int64_t PrismMesh::num_tagged_triangles() const {
   return static_cast<std::int64_t>(parts_->caps.size());
 }
 
-std::int64_t PrismMesh::num_boundary_quads() const {
+std::int64_t PrismMesh::num_tagged_quads() const {
   std::int64_t quads = 0;
   for (const Wall& wall : parts_->walls) {
     quads += parts_->plan.first_sublayer(wall.slab + 1) - parts_->plan.first_sublayer(wall.slab);

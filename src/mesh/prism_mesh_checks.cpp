@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "pcbmesh/base/error.hpp"
@@ -54,7 +55,12 @@ void check_caps(const PrismMeshParts& parts) {
   for (const Cap& cap : parts.caps) {
     const std::int32_t face = cap.level == parts.plan.num_sublayers() ? num_slabs : slab_of[index(cap.level)];
     PCBMESH_ASSERT(parts.plan.first_sublayer(face) == cap.level);
-    PCBMESH_ASSERT(present(face - 1, cap.triangle) == cap.up && present(face, cap.triangle) != cap.up);
+    if (parts.face_tags[index(cap.tag)].is_inner) {
+      PCBMESH_ASSERT(cap.up && present(face - 1, cap.triangle) && present(face, cap.triangle));
+      ++expected;
+    } else {
+      PCBMESH_ASSERT(present(face - 1, cap.triangle) == cap.up && present(face, cap.triangle) != cap.up);
+    }
     PCBMESH_ASSERT(!seen[index(face)][index(cap.triangle)]);
     seen[index(face)][index(cap.triangle)] = true;
   }
@@ -72,6 +78,25 @@ std::uint64_t edge_key(std::int32_t a, std::int32_t b) {
   return forward ? x : ~x + 1;
 }
 
+/// Walls between two prisms stand on an edge of the plane with prisms on both sides.
+void check_inner_walls(const PrismMeshParts& parts, std::vector<Wall> walls) {
+  if (walls.empty()) return;
+  const Presence present(parts);
+  const auto key = [](std::int32_t a, std::int32_t b) { return std::pair(std::min(a, b), std::max(a, b)); };
+  std::sort(walls.begin(), walls.end(), [&](const Wall& p, const Wall& q) { return key(p.a, p.b) < key(q.a, q.b); });
+  std::int64_t sides = 0;
+  for (std::int32_t t = 0; t < parts.planar.num_triangles(); ++t) {
+    const auto& corners = parts.planar.triangles()[index(t)];
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto edge = key(corners[i], corners[i == 2 ? 0 : i + 1]);
+      auto wall = std::lower_bound(walls.begin(), walls.end(), edge,
+                                   [&](const Wall& w, const auto& wanted) { return key(w.a, w.b) < wanted; });
+      for (; wall != walls.end() && key(wall->a, wall->b) == edge; ++wall) sides += present(wall->slab, t) ? 1 : 0;
+    }
+  }
+  PCBMESH_ASSERT(sides == 2 * static_cast<std::int64_t>(walls.size()));
+}
+
 void check_walls(const PrismMeshParts& parts) {
   const auto num_slabs = index(parts.plan.num_slabs());
   std::vector<std::uint64_t> region_boundary(index(parts.planar.num_regions()), 0);
@@ -85,13 +110,18 @@ void check_walls(const PrismMeshParts& parts) {
   }
   std::vector<std::tuple<std::int32_t, std::int32_t, std::int32_t>> edges;  // slab, lower vertex, higher vertex
   edges.reserve(parts.walls.size());
+  std::vector<Wall> inner;
   for (const Wall& wall : parts.walls) {
-    open[index(wall.slab)] -= edge_key(wall.a, wall.b);
+    if (parts.face_tags[index(wall.tag)].is_inner)
+      inner.push_back(wall);
+    else
+      open[index(wall.slab)] -= edge_key(wall.a, wall.b);
     edges.emplace_back(wall.slab, std::min(wall.a, wall.b), std::max(wall.a, wall.b));
   }
   PCBMESH_ASSERT(std::all_of(open.begin(), open.end(), [](std::uint64_t rest) { return rest == 0; }));
   std::sort(edges.begin(), edges.end());
   PCBMESH_ASSERT(std::adjacent_find(edges.begin(), edges.end()) == edges.end());
+  check_inner_walls(parts, std::move(inner));
 }
 
 }  // namespace
@@ -108,6 +138,13 @@ void check_tables(const PrismMeshParts& parts) {
   for (std::size_t i = 0; i < parts.face_tags.size(); ++i) {
     const FaceTag& tag = parts.face_tags[i];
     PCBMESH_ASSERT(tag.id == static_cast<std::int32_t>(i) + 1 && (tag.net == -1 || is_below(tag.net, parts.nets.size())));
+    PCBMESH_ASSERT(tag.material == -1 || is_below(tag.material, parts.materials.size()));
+    PCBMESH_ASSERT(tag.port == -1 || is_below(tag.port, parts.ports.size()));
+    PCBMESH_ASSERT(tag.partner == -1 || is_below(tag.partner, parts.face_tags.size()));
+  }
+  for (const Port& port : parts.ports) {
+    PCBMESH_ASSERT(port.positive_net == -1 || is_below(port.positive_net, parts.nets.size()));
+    PCBMESH_ASSERT(port.negative_net == -1 || is_below(port.negative_net, parts.nets.size()));
   }
   for (const Cap& cap : parts.caps) {
     PCBMESH_ASSERT(is_below(cap.tag, parts.face_tags.size()) && is_below(cap.level, index(parts.plan.num_levels())) &&

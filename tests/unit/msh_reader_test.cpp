@@ -306,7 +306,7 @@ std::vector<std::string> small_files() {
   const Folder folder;
   for (const std::string version : {"4.1", "2.2"})
     for (const bool binary : {true, false}) {
-      msh::mesh_format.write(mesh, folder / "a.msh", {.binary = binary, .version = version}, Progress{});
+      write_mesh(mesh, folder / "a.msh", {.binary = binary, .version = version});
       files.push_back(contents(folder / "a.msh"));
     }
   return files;

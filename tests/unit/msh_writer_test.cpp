@@ -7,10 +7,9 @@
 #include <tuple>
 
 #include "folder.hpp"
-#include "formats/msh/element_stream.hpp"
 #include "formats/msh/format.hpp"
-#include "formats/tags_json/group_names.hpp"
 #include "pcbmesh/base/error.hpp"
+#include "pcbmesh/mesh/group_names.hpp"
 #include "sample_prism_mesh.hpp"
 
 namespace pcbmesh::formats {
@@ -28,7 +27,7 @@ const Variant variants[] = {{"4.1", true}, {"4.1", false}, {"2.2", true}, {"2.2"
 
 void write(const mesh::PrismMesh& mesh, const std::filesystem::path& file, const WriteMeshOptions& options,
            const Progress& progress = Progress{}) {
-  msh::mesh_format.write(mesh, file, options, progress);
+  write_mesh(mesh, file, options, {}, progress);
 }
 
 mesh::MeshData written_and_read(const mesh::PrismMesh& mesh, const WriteMeshOptions& options) {
@@ -195,19 +194,6 @@ TEST(MshWriter, CancellingLeavesTheOldFileAlone) {
   }
 }
 
-TEST(MshWriter, ASmallCacheOfSlabsGivesTheSameElements) {
-  const mesh::PrismMesh mesh = mesh::PrismMesh::from_parts(sample_parts());
-  const auto all = [&](std::size_t cache_bytes) {
-    msh::ElementStream elements(mesh, cache_bytes);
-    std::vector<std::int64_t> out;
-    for (int pass = 0; pass < 2; ++pass)
-      for (auto block = elements.blocks().rbegin(); block != elements.blocks().rend(); ++block)
-        elements.visit(*block, [&](std::span<const std::int64_t> rows) { out.insert(out.end(), rows.begin(), rows.end()); });
-    return out;
-  };
-  EXPECT_EQ(all(0), all(std::size_t{1} << 20));
-}
-
 TEST(MshWriter, ATagTableThatLiesIsOurBugNotABadFile) {
   mesh::PrismMeshParts parts = sample_parts();
   ++parts.volume_tags[2].num_prisms;
@@ -225,9 +211,9 @@ TEST(GroupNames, AreShortCleanAndDistinct) {
     return text;
   }();
   const std::vector<std::string> names{long_a, long_b, "a\"b", "a'b", "line\nbreak", "", "bad\xFFutf", umlauts, "same", "same"};
-  const std::vector<std::string> out = tags_json::group_names(names);
+  const std::vector<std::string> out = mesh::group_names(names);
   EXPECT_EQ(std::set<std::string>(out.begin(), out.end()).size(), names.size());
-  for (const std::string& name : out) EXPECT_LE(name.size(), tags_json::max_name_bytes);
+  for (const std::string& name : out) EXPECT_LE(name.size(), mesh::max_name_bytes);
   EXPECT_EQ(out[0], std::string(125, 'x') + "~1");
   EXPECT_EQ(out[1], std::string(125, 'x') + "~2");
   EXPECT_EQ(out[2], "a'b~3") << "the name that needs no change keeps it";
@@ -238,7 +224,7 @@ TEST(GroupNames, AreShortCleanAndDistinct) {
   EXPECT_EQ(out[7], umlauts.substr(0, 125) + "~8");
   EXPECT_EQ(out[8], "same");
   EXPECT_EQ(out[9], "same~10");
-  EXPECT_EQ(tags_json::group_names(out), out);
+  EXPECT_EQ(mesh::group_names(out), out);
 }
 
 }  // namespace

@@ -169,8 +169,8 @@ TEST(PrismMesh, FullMeshHasTrianglesTimesSublayers) {
   const PrismMesh mesh = PrismMesh::from_parts(parts);
   EXPECT_EQ(mesh.num_prisms(), 72 * 5);
   EXPECT_EQ(mesh.num_nodes(), 49 * 6);
-  EXPECT_EQ(mesh.num_boundary_triangles(), 2 * 72);
-  EXPECT_EQ(mesh.num_boundary_quads(), 24 * 5);
+  EXPECT_EQ(mesh.num_tagged_triangles(), 2 * 72);
+  EXPECT_EQ(mesh.num_tagged_quads(), 24 * 5);
   std::vector<std::array<std::int64_t, 6>> all(static_cast<std::size_t>(mesh.num_prisms()));
   mesh.fill_prisms(0, all);
   const ExplicitMesh expected = spell_out(planar, parts.plan, parts.column_tags);
@@ -210,7 +210,7 @@ TEST(PrismMesh, X3_CapsAndWallsCloseTheMesh) {
     }
     for (const auto& face : boundary_faces(mesh)) found.insert(turned(face));
     EXPECT_EQ(found, expected);
-    EXPECT_EQ(static_cast<std::int64_t>(found.size()), mesh.num_boundary_triangles() + mesh.num_boundary_quads());
+    EXPECT_EQ(static_cast<std::int64_t>(found.size()), mesh.num_tagged_triangles() + mesh.num_tagged_quads());
   }
 }
 

@@ -31,7 +31,7 @@ TEST(VtuWriter, HoldsEveryPrismInIdOrderWithItsTags) {
     const mesh::PrismMesh mesh = mesh::PrismMesh::from_parts(parts);
     const testing::ExplicitMesh expected = testing::spell_out(parts.planar, parts.plan, parts.column_tags);
     const Folder folder;
-    vtu::mesh_format.write(mesh, folder / "a.vtu", {.unit = LengthUnit::millimetre, .version = {}}, Progress{});
+    write_mesh(mesh, folder / "a.vtu", {.unit = LengthUnit::millimetre, .version = {}});
     EXPECT_EQ(folder.num_files(), 1u);
     const std::string file = contents(folder / "a.vtu");
     const auto points = array_of<double>(file, "Points");
@@ -58,8 +58,8 @@ TEST(VtuWriter, HoldsEveryPrismInIdOrderWithItsTags) {
 TEST(VtuWriter, OptionsMeantForOtherFilesOfTheRunChangeNothing) {
   const mesh::PrismMesh mesh = mesh::PrismMesh::from_parts(testing::plain_parts(1, 1, 1));
   const Folder folder;
-  vtu::mesh_format.write(mesh, folder / "a.vtu", {}, Progress{});
-  vtu::mesh_format.write(mesh, folder / "b.vtu", {.binary = false, .version = "2.2"}, Progress{});
+  write_mesh(mesh, folder / "a.vtu", {});
+  write_mesh(mesh, folder / "b.vtu", {.binary = false, .version = "2.2"});
   EXPECT_EQ(contents(folder / "a.vtu"), contents(folder / "b.vtu"));
 }
 

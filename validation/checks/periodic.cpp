@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <unordered_map>
 
 #include "validation/checks/checks.hpp"
@@ -81,11 +82,27 @@ std::vector<std::int64_t> faces_of_group(const Context& context, const std::stri
   return faces;
 }
 
+/// Least coordinates of all corners; zero without faces.
+Vector3 low_corner(const Context& context, std::span<const std::int64_t> faces) {
+  if (faces.empty()) return {};
+  constexpr double huge = std::numeric_limits<double>::infinity();
+  Vector3 low{huge, huge, huge};
+  for (const std::int64_t face : faces) {
+    for (const std::int64_t node : context.corners_of_face(face)) {
+      const Vector3& at = context.mesh.nodes[static_cast<std::size_t>(node)];
+      for (std::size_t axis = 0; axis < 3; ++axis) low[axis] = std::min(low[axis], at[axis]);
+    }
+  }
+  return low;
+}
+
 void check_pair(const Context& context, const Expectation::Periodic& pair, CheckLog& log) {
   const std::vector<std::int64_t> faces_a = faces_of_group(context, pair.a), faces_b = faces_of_group(context, pair.b);
   log.examined(static_cast<std::int64_t>(faces_a.size() + faces_b.size()));
-  Vector3 shift = pair.shift_m;
-  for (double& x : shift) x /= context.expectation->unit_m;
+  const Vector3 low_a = low_corner(context, faces_a), low_b = low_corner(context, faces_b);
+  Vector3 shift = low_b - low_a;
+  for (std::size_t axis = 0; axis < 3 && pair.shift_m; ++axis)
+    shift[axis] = (*pair.shift_m)[axis] / context.expectation->unit_m;
   PlaceTable table(context, std::max(context.tolerance, 1e-300));
   std::vector<FaceKey> keys;
   for (const std::int64_t face : faces_b) {

@@ -13,6 +13,7 @@
 #include "pcbmesh/base/units.hpp"
 #include "pcbmesh/board/board.hpp"
 #include "pcbmesh/mesh/mesh_data.hpp"
+#include "pcbmesh/mesh/mesh_source.hpp"
 #include "pcbmesh/mesh/prism_mesh.hpp"
 
 namespace pcbmesh::formats {
@@ -44,7 +45,7 @@ struct MeshFormat {
   std::string_view name;
   std::string_view title;
   std::span<const std::string_view> extensions;
-  void (*write)(const mesh::PrismMesh& mesh, const std::filesystem::path& file, const WriteMeshOptions& options,
+  void (*write)(mesh::MeshSource& source, const std::filesystem::path& file, const WriteMeshOptions& options,
                 const Progress& progress);
   mesh::MeshData (*read)(const std::filesystem::path& file, const Progress& progress);
 };
@@ -64,6 +65,9 @@ struct MeshFormat {
 
 /// Writes a mesh: by format name if given, else by extension. The file appears whole or not at all; an existing
 /// one survives any failure. @throws Error usage (101), write_failed (701), format_limit (703), cancelled (103).
+void write_mesh(mesh::MeshSource& source, const std::filesystem::path& file, const WriteMeshOptions& options,
+                std::string_view format = {}, const Progress& progress = Progress{});
+/// The same for the prisms of an implicit mesh. Without a quality functor no cell array `quality` is written.
 void write_mesh(const mesh::PrismMesh& mesh, const std::filesystem::path& file, const WriteMeshOptions& options,
                 std::string_view format = {}, const Progress& progress = Progress{});
 

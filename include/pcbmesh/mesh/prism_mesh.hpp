@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pcbmesh/board/board.hpp"
@@ -25,20 +26,65 @@ struct VolumeTag {
   double volume_m3 = 0;
 };
 
-enum class FaceTagKind { outer, conductor };
+enum class FaceTagKind {
+  outer,      ///< hull of the domain
+  conductor,  ///< skin of a hollow conductor
+  sheet,      ///< conductor of no thickness
+  port,       ///< lumped port
+  wave_port,  ///< wave port, on the hull
+  interface   ///< between two volume groups, on request
+};
+[[nodiscard]] std::string_view name_of(FaceTagKind kind);
+
+/// What holds on a face group.
+enum class BoundaryCondition {
+  none,       ///< nothing is said: a solver's natural condition
+  absorbing,  ///< first-order absorbing boundary
+  pec,        ///< perfect electric conductor
+  pmc,        ///< perfect magnetic conductor
+  impedance,  ///< surface impedance of FaceTag::impedance_ohm
+  conductor,  ///< lossy conductor of FaceTag::material
+  port,       ///< FaceTag::port
+  periodic    ///< partner of FaceTag::partner
+};
+[[nodiscard]] std::string_view name_of(BoundaryCondition condition);
 
 /// One face group.
 struct FaceTag {
   std::int32_t id = 0;  ///< 1-based, dense, own number space beside the volumes
-  std::string name;     ///< "xmin".."zmax", "side" (all other outer faces), or "surface|net"
+  std::string name;     ///< "xmin".."zmax", "side" (all other outer faces), "surface|net", "sheet|net", "port|name" ...
   FaceTagKind kind = FaceTagKind::outer;
   std::int32_t net = -1;
+  bool is_inner = false;  ///< all its faces lie between two prisms; else none does
+  BoundaryCondition condition = BoundaryCondition::none;
+  double impedance_ohm = 0;    ///< condition impedance
+  std::int32_t material = -1;  ///< condition conductor: index into materials
+  double thickness_m = 0;      ///< sheet: thickness of the copper it stands for
+  std::int32_t port = -1;      ///< condition port: index into ports
+  std::int32_t partner = -1;   ///< condition periodic: index into face_tags
   std::int64_t num_triangles = 0;
   std::int64_t num_quads = 0;
   double area_m2 = 0;
 };
 
-/// Horizontal face of the boundary: triangle `triangle` at level `level`. `up` = its outward normal points to +z.
+enum class PortKind { lumped, wave };
+
+/// A port: one or several face groups, from its positive to its negative terminal.
+struct Port {
+  std::string name;
+  PortKind kind = PortKind::lumped;
+  double impedance_ohm = 50;
+  bool is_excited = true;
+  std::array<double, 3> direction{0, 0, 1};  ///< lumped: unit vector of the field, from negative to positive terminal
+  double length_m = 0;                       ///< lumped: distance of the terminals, along direction
+  double width_m = 0;                        ///< lumped: extent across
+  std::int32_t positive_net = -1;            ///< net at the positive terminal, -1 = none
+  std::int32_t negative_net = -1;            ///< reference net
+  std::array<double, 3> at_m{};              ///< middle of the port
+};
+
+/// Horizontal tagged face: triangle `triangle` at level `level`. On the boundary `up` = its outward normal points to +z;
+/// between two prisms `up` is true.
 struct Cap {
   std::int32_t tag = 0;  ///< index into face_tags
   std::int32_t level = 0;
@@ -46,8 +92,8 @@ struct Cap {
   bool up = false;
 };
 
-/// Vertical face of the boundary over planar edge a->b, one per sub-layer of `slab`; the meshed side is to the left of a->b,
-/// so the outward normal points to the right.
+/// Vertical tagged face over planar edge a->b, one per sub-layer of `slab`; on the boundary the meshed side is to the left of
+/// a->b, so that the outward normal points to the right.
 struct Wall {
   std::int32_t tag = 0;
   std::int32_t slab = 0;
@@ -68,6 +114,7 @@ struct PrismMeshParts {
   std::vector<Wall> walls;                ///< sorted by (tag, slab, a, b)
   std::vector<std::int32_t> net_pieces;   ///< per net: connected pieces of its copper by the exact layout; -1 = not known
   std::vector<std::array<std::int32_t, 2>> touching_nets;  ///< pairs of nets that touch in the layout itself
+  std::vector<Port> ports;
 };
 
 /// The mesh: PlanarMesh x LayerPlan x label table. Implicit: ids by arithmetic, nodes and cells computed on demand.
@@ -78,7 +125,8 @@ struct PrismMeshParts {
 ///
 /// @guarantee X1  memory is O(planar mesh + regions x slabs + boundary faces of one sub-layer per slab), never O(prisms)
 /// @guarantee X2  node and prism ids are 0..n-1, ascending in (level, vertex) and (sub-layer, triangle)
-/// @guarantee X3  every face between a prism and a void or the outside is in exactly one of caps and walls
+/// @guarantee X3  every face between a prism and a void or the outside is in exactly one of caps and walls; faces between two
+/// prisms may be, once, under a tag that is_inner
 class PrismMesh {
  public:
   /// @throws Error internal (901). @cost O(planar mesh x distinct slab masks + boundary faces x log).
@@ -95,12 +143,13 @@ class PrismMesh {
   [[nodiscard]] std::span<const Wall> walls() const { return parts_->walls; }
   [[nodiscard]] std::span<const std::int32_t> net_pieces() const { return parts_->net_pieces; }
   [[nodiscard]] std::span<const std::array<std::int32_t, 2>> touching_nets() const { return parts_->touching_nets; }
+  [[nodiscard]] std::span<const Port> ports() const { return parts_->ports; }
 
   [[nodiscard]] std::int64_t num_nodes() const { return num_nodes_; }
   [[nodiscard]] std::int64_t num_prisms() const { return num_prisms_; }
-  /// Boundary faces: caps and walls times sub-layers.
-  [[nodiscard]] std::int64_t num_boundary_triangles() const;
-  [[nodiscard]] std::int64_t num_boundary_quads() const;
+  /// Tagged faces: caps, and walls times sub-layers.
+  [[nodiscard]] std::int64_t num_tagged_triangles() const;
+  [[nodiscard]] std::int64_t num_tagged_quads() const;
 
   /// Index into volume_tags, or -1 if (slab, triangle) is void. @cost O(1).
   [[nodiscard]] std::int32_t tag_of(std::int32_t slab, std::int32_t triangle) const;

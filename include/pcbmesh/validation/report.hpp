@@ -88,8 +88,8 @@ struct Expectation {
   };
   /// The faces of group `b` are those of group `a`, shifted.
   struct Periodic {
-    std::string a, b;  ///< names of face groups
-    std::array<double, 3> shift_m{};
+    std::string a, b;                              ///< names of face groups
+    std::optional<std::array<double, 3>> shift_m;  ///< from a to b; nullopt = as the corners of their boxes lie
   };
   double unit_m = 1.0;  ///< metres per unit of the file
   std::vector<Volume> volumes;

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "formats/msh/element_stream.hpp"
+#include "pcbmesh/mesh/prism_source.hpp"
 
 #include <algorithm>
 #include <limits>
+#include <string>
+#include <utility>
 
-#include "formats/tags_json/group_names.hpp"
 #include "pcbmesh/base/error.hpp"
+#include "pcbmesh/mesh/group_names.hpp"
 
-namespace pcbmesh::formats::msh {
+namespace pcbmesh::mesh {
 namespace {
 
 constexpr std::size_t triangles_at_once = 512;
@@ -42,9 +44,9 @@ auto items_with_tag(const Items& items, std::int32_t tag_index) {
 }  // namespace
 
 /// Fixed buffer of rows that is handed on whenever it is full.
-class ElementStream::Rows {
+class PrismSource::Rows {
  public:
-  Rows(int width, const Visit& visit) : width_(static_cast<std::size_t>(width)), visit_(visit), buffer_(chunk * width_) {}
+  Rows(int width, const VisitNodes& visit) : width_(static_cast<std::size_t>(width)), visit_(visit), buffer_(chunk * width_) {}
   /// Room for up to `wanted` rows; at least one.
   std::span<std::int64_t> room(std::size_t wanted) {
     if (used_ == chunk) flush();
@@ -62,50 +64,66 @@ class ElementStream::Rows {
 
  private:
   std::size_t width_;
-  const Visit& visit_;
+  const VisitNodes& visit_;
   std::vector<std::int64_t> buffer_;
   std::size_t used_ = 0;
   std::int64_t total_ = 0;
 };
 
-ElementStream::ElementStream(const mesh::PrismMesh& mesh, std::size_t cache_bytes) : mesh_(mesh) {
+PrismSource::PrismSource(const PrismMesh& mesh, PrismQuality quality, std::size_t cache_bytes)
+    : mesh_(mesh), quality_(std::move(quality)) {
+  num_nodes_ = mesh.num_nodes();
+  layers_.assign(mesh.layers().begin(), mesh.layers().end());
+  nets_.assign(mesh.nets().begin(), mesh.nets().end());
+  materials_.assign(mesh.materials().begin(), mesh.materials().end());
   survey_faces();
   survey_volumes();
-  for (const ElementBlock& block : blocks_) num_elements_ += block.count;
   const auto triangles = static_cast<std::size_t>(mesh.planar().num_triangles());
   max_cached_ = std::max<std::size_t>(2, cache_bytes / (sizeof(std::int32_t) * std::max<std::size_t>(triangles, 1)));
 }
 
-void ElementStream::survey_faces() {
+std::int32_t PrismSource::tag_index_of(const ElementBlock& block) const {
+  // Face groups stand before volume groups, each in the order of its tags.
+  return dimension_of(block.kind) == 2 ? block.group : block.group - static_cast<std::int32_t>(mesh_.face_tags().size());
+}
+
+void PrismSource::survey_faces() {
   const auto points = mesh_.planar().points_m();
   const auto z = mesh_.plan().z_m();
   std::vector<std::string> names;
-  for (const mesh::FaceTag& tag : mesh_.face_tags()) names.push_back(tag.name);
-  names = tags_json::group_names(names);
+  for (const FaceTag& tag : mesh_.face_tags()) names.push_back(tag.name);
+  names = group_names(names);
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const mesh::FaceTag& tag = mesh_.face_tags()[i];
+    const FaceTag& tag = mesh_.face_tags()[i];
     const auto tag_index = static_cast<std::int32_t>(i);
     GrowingExtent extent;
     std::int64_t num_triangles = 0, num_quads = 0;
-    for (const mesh::Cap& cap : items_with_tag(mesh_.caps(), tag_index)) {
+    for (const Cap& cap : items_with_tag(mesh_.caps(), tag_index)) {
       ++num_triangles;
       for (std::int32_t v : mesh_.planar().triangles()[index(cap.triangle)])
         extent.add(points[index(v)], points[index(v)], z[index(cap.level)], z[index(cap.level)]);
     }
-    for (const mesh::Wall& wall : items_with_tag(mesh_.walls(), tag_index)) {
+    for (const Wall& wall : items_with_tag(mesh_.walls(), tag_index)) {
       const std::int32_t low = mesh_.plan().first_sublayer(wall.slab), high = mesh_.plan().first_sublayer(wall.slab + 1);
       num_quads += high - low;
       for (std::int32_t v : {wall.a, wall.b}) extent.add(points[index(v)], points[index(v)], z[index(low)], z[index(high)]);
     }
-    groups_.push_back({2, tag.id, names[i], extent.value()});
-    if (num_triangles > 0) blocks_.push_back({ElementKind::triangle, tag_index, tag.id, num_triangles});
-    if (num_quads > 0) blocks_.push_back({ElementKind::quadrangle, tag_index, tag.id, num_quads});
+    const auto group = static_cast<std::int32_t>(groups_.size());
+    groups_.push_back({.dimension = 2,
+                       .tag = tag.id,
+                       .name = names[i],
+                       .extent = extent.value(),
+                       .num_elements = num_triangles + num_quads,
+                       .net = tag.net,
+                       .is_inner = tag.is_inner});
+    if (num_triangles > 0) blocks_.push_back({ElementKind::triangle, group, tag.id, num_triangles});
+    if (num_quads > 0) blocks_.push_back({ElementKind::quadrangle, group, tag.id, num_quads});
   }
 }
 
-void ElementStream::survey_volumes() {
-  const mesh::PlanarMesh& planar = mesh_.planar();
-  const mesh::LayerPlan& plan = mesh_.plan();
+void PrismSource::survey_volumes() {
+  const PlanarMesh& planar = mesh_.planar();
+  const LayerPlan& plan = mesh_.plan();
   constexpr double far = std::numeric_limits<double>::infinity();
   struct Region {
     std::array<double, 2> min{far, far}, max{-far, -far};
@@ -137,30 +155,40 @@ void ElementStream::survey_volumes() {
     }
   }
   std::vector<std::string> names;
-  for (const mesh::VolumeTag& tag : mesh_.volume_tags()) names.push_back(tag.name);
-  names = tags_json::group_names(names);
+  for (const VolumeTag& tag : mesh_.volume_tags()) names.push_back(tag.name);
+  names = group_names(names);
   for (std::size_t i = 0; i < num_tags; ++i) {
-    const mesh::VolumeTag& tag = mesh_.volume_tags()[i];
-    groups_.push_back({3, tag.id, names[i], extents[i].value()});
-    if (tag.num_prisms > 0) blocks_.push_back({ElementKind::wedge, static_cast<std::int32_t>(i), tag.id, tag.num_prisms});
+    const VolumeTag& tag = mesh_.volume_tags()[i];
+    const auto group = static_cast<std::int32_t>(groups_.size());
+    groups_.push_back({.dimension = 3,
+                       .tag = tag.id,
+                       .name = names[i],
+                       .extent = extents[i].value(),
+                       .num_elements = tag.num_prisms,
+                       .layer = tag.layer,
+                       .material = tag.material,
+                       .net = tag.net});
+    if (tag.num_prisms > 0) blocks_.push_back({ElementKind::wedge, group, tag.id, tag.num_prisms});
   }
 }
 
-void ElementStream::visit(const ElementBlock& block, const Visit& visit) {
-  Rows rows(num_corners(block.kind), visit);
-  if (block.kind == ElementKind::triangle)
-    visit_caps(block.tag_index, rows);
-  else if (block.kind == ElementKind::quadrangle)
-    visit_walls(block.tag_index, rows);
+void PrismSource::visit(std::size_t block, const VisitNodes& visit) {
+  const ElementBlock& chosen = blocks_.at(block);
+  Rows rows(nodes_of(chosen.kind), visit);
+  const std::int32_t tag_index = tag_index_of(chosen);
+  if (chosen.kind == ElementKind::triangle)
+    visit_caps(tag_index, rows);
+  else if (chosen.kind == ElementKind::quadrangle)
+    visit_walls(tag_index, rows);
   else
-    visit_wedges(block.tag_index, rows);
+    visit_wedges(tag_index, rows);
   rows.flush();
   // Counts went into the file before the rows: a mesh whose tag table lies must not become a file that lies.
-  PCBMESH_ASSERT(rows.total() == block.count);
+  PCBMESH_ASSERT(rows.total() == chosen.count);
 }
 
-void ElementStream::visit_caps(std::int32_t tag_index, Rows& rows) const {
-  for (const mesh::Cap& cap : items_with_tag(mesh_.caps(), tag_index)) {
+void PrismSource::visit_caps(std::int32_t tag_index, Rows& rows) const {
+  for (const Cap& cap : items_with_tag(mesh_.caps(), tag_index)) {
     auto [a, b, c] = mesh_.planar().triangles()[index(cap.triangle)];
     if (!cap.up) std::swap(b, c);
     const auto out = rows.room(1);
@@ -171,8 +199,8 @@ void ElementStream::visit_caps(std::int32_t tag_index, Rows& rows) const {
   }
 }
 
-void ElementStream::visit_walls(std::int32_t tag_index, Rows& rows) const {
-  for (const mesh::Wall& wall : items_with_tag(mesh_.walls(), tag_index)) {
+void PrismSource::visit_walls(std::int32_t tag_index, Rows& rows) const {
+  for (const Wall& wall : items_with_tag(mesh_.walls(), tag_index)) {
     const std::int32_t last = mesh_.plan().first_sublayer(wall.slab + 1);
     for (std::int32_t k = mesh_.plan().first_sublayer(wall.slab); k < last; ++k) {
       const auto out = rows.room(1);
@@ -185,30 +213,65 @@ void ElementStream::visit_walls(std::int32_t tag_index, Rows& rows) const {
   }
 }
 
-void ElementStream::visit_wedges(std::int32_t tag_index, Rows& rows) {
-  const auto corners = mesh_.planar().triangles();
-  std::vector<std::array<std::int32_t, 3>> part;
+template <class Visit>
+void PrismSource::visit_pieces(std::int32_t tag_index, Visit&& visit) {
   for (const std::int32_t slab : slabs_of_tag_[index(tag_index)]) {
     auto triangles = triangles_of(slab, tag_index);
-    const std::int32_t begin = mesh_.plan().first_sublayer(slab), end = mesh_.plan().first_sublayer(slab + 1);
-    // Levels strictly inside a slab hold the same vertices: one table serves them all.
-    const std::span<const std::int32_t> bottom = ranks_of(begin), top = ranks_of(end);
-    const std::span<const std::int32_t> inside = end - begin > 1 ? ranks_of(begin + 1) : bottom;
     // A few triangles through all sub-layers, then the next few: the plane is fetched once per slab, not once per sub-layer.
     while (!triangles.empty()) {
       const auto few = triangles.first(std::min(triangles.size(), triangles_at_once));
       triangles = triangles.subspan(few.size());
-      part.clear();
-      for (const std::int32_t t : few) part.push_back(corners[index(t)]);
-      for (std::int32_t k = begin; k < end; ++k)
-        visit_sublayer(k, part, k == begin ? bottom : inside, k + 1 == end ? top : inside, rows);
+      visit(slab, few);
     }
   }
 }
 
-void ElementStream::visit_sublayer(std::int32_t sublayer, std::span<const std::array<std::int32_t, 3>> triangles,
-                                   std::span<const std::int32_t> low_ranks, std::span<const std::int32_t> high_ranks,
-                                   Rows& rows) const {
+void PrismSource::visit_wedges(std::int32_t tag_index, Rows& rows) {
+  const auto corners = mesh_.planar().triangles();
+  std::vector<std::array<std::int32_t, 3>> part;
+  visit_pieces(tag_index, [&](std::int32_t slab, std::span<const std::int32_t> few) {
+    const std::int32_t begin = mesh_.plan().first_sublayer(slab), end = mesh_.plan().first_sublayer(slab + 1);
+    // Levels strictly inside a slab hold the same vertices: one table serves them all.
+    const std::span<const std::int32_t> bottom = ranks_of(begin), top = ranks_of(end);
+    const std::span<const std::int32_t> inside = end - begin > 1 ? ranks_of(begin + 1) : bottom;
+    part.clear();
+    for (const std::int32_t t : few) part.push_back(corners[index(t)]);
+    for (std::int32_t k = begin; k < end; ++k)
+      visit_sublayer(k, part, k == begin ? bottom : inside, k + 1 == end ? top : inside, rows);
+  });
+}
+
+void PrismSource::visit_field(std::size_t block, CellField field, const VisitValues& visit) {
+  PCBMESH_ASSERT(has_field(field) && dimension_of(blocks_.at(block).kind) == 3);
+  const PlanarMesh& planar = mesh_.planar();
+  std::vector<double> values;
+  const auto flush = [&] {
+    for (std::span<const double> rest = values; !rest.empty(); rest = rest.subspan(std::min(chunk, rest.size())))
+      visit(rest.first(std::min(chunk, rest.size())));
+    values.clear();
+  };
+  std::vector<std::array<double, 2>> shapes;  // area and sum of squared edges: the same through all sub-layers
+  visit_pieces(tag_index_of(blocks_[block]), [&](std::int32_t slab, std::span<const std::int32_t> few) {
+    shapes.clear();
+    if (field == CellField::quality)
+      for (const std::int32_t t : few) {
+        const std::array<double, 3> squared = planar.squared_edges_m2(t);
+        shapes.push_back({planar.area_m2(t), squared[0] + squared[1] + squared[2]});
+      }
+    for (std::int32_t k = mesh_.plan().first_sublayer(slab); k < mesh_.plan().first_sublayer(slab + 1); ++k) {
+      const double height = mesh_.plan().height_m(k);
+      for (std::size_t i = 0; i < few.size(); ++i)
+        values.push_back(field == CellField::region     ? planar.regions()[index(few[i])]
+                         : field == CellField::sublayer ? k
+                                                        : quality_(shapes[i][0], shapes[i][1], height));
+      flush();
+    }
+  });
+}
+
+void PrismSource::visit_sublayer(std::int32_t sublayer, std::span<const std::array<std::int32_t, 3>> triangles,
+                                 std::span<const std::int32_t> low_ranks, std::span<const std::int32_t> high_ranks,
+                                 Rows& rows) const {
   const auto write = [&](auto low, auto high) {
     for (auto rest = triangles; !rest.empty();) {
       const auto out = rows.room(rest.size());
@@ -240,7 +303,7 @@ void ElementStream::visit_sublayer(std::int32_t sublayer, std::span<const std::a
     write(ranked(sublayer, low_ranks), ranked(sublayer + 1, high_ranks));
 }
 
-std::span<const std::int32_t> ElementStream::ranks_of(std::int32_t level) {
+std::span<const std::int32_t> PrismSource::ranks_of(std::int32_t level) {
   const std::int32_t num_points = mesh_.planar().num_points();
   if (mesh_.num_nodes_of_level(level) == num_points) return {};
   auto entry = std::ranges::find(level_ranks_, level, &LevelRanks::level);
@@ -256,7 +319,7 @@ std::span<const std::int32_t> ElementStream::ranks_of(std::int32_t level) {
   return entry->ranks;
 }
 
-std::span<const std::int32_t> ElementStream::triangles_of(std::int32_t slab, std::int32_t tag_index) {
+std::span<const std::int32_t> PrismSource::triangles_of(std::int32_t slab, std::int32_t tag_index) {
   auto entry = std::ranges::find(cache_, slab, &SlabGroups::slab);
   if (entry == cache_.end()) {
     if (cache_.size() < max_cached_) {
@@ -272,4 +335,4 @@ std::span<const std::int32_t> ElementStream::triangles_of(std::int32_t slab, std
   return std::span<const std::int32_t>(entry->triangles).subspan(first, last - first);
 }
 
-}  // namespace pcbmesh::formats::msh
+}  // namespace pcbmesh::mesh

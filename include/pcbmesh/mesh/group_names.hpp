@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace pcbmesh::formats::tags_json {
+namespace pcbmesh::mesh {
 
 /// Longest name that every reader of $PhysicalNames takes, in bytes.
 inline constexpr std::size_t max_name_bytes = 127;
@@ -15,4 +15,4 @@ inline constexpr std::size_t max_name_bytes = 127;
 /// of the result differ. @cost O(n log n).
 [[nodiscard]] std::vector<std::string> group_names(std::span<const std::string> names);
 
-}  // namespace pcbmesh::formats::tags_json
+}  // namespace pcbmesh::mesh

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "formats/tags_json/group_names.hpp"
+#include "pcbmesh/mesh/group_names.hpp"
 
 #include <functional>
 #include <set>
 #include <string_view>
 
-namespace pcbmesh::formats::tags_json {
+namespace pcbmesh::mesh {
 namespace {
 
 std::string_view cut(std::string_view name, std::size_t most) {
@@ -71,4 +71,4 @@ std::vector<std::string> group_names(std::span<const std::string> names) {
   return out;
 }
 
-}  // namespace pcbmesh::formats::tags_json
+}  // namespace pcbmesh::mesh

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "pcbmesh/mesh/mesh_source.hpp"
+
+namespace pcbmesh::mesh {
+
+/// Quality of a prism from area and sum of squared edges of its triangle, and its height.
+using PrismQuality = std::function<double(double area_m2, double beta_m2, double height_m)>;
+
+/// The prisms and tagged faces of an implicit mesh, block by block. Prisms of a tag come slab by slab, a few triangles through
+/// all its sub-layers at a time.
+///
+/// @cost memory O(regions x slabs) + triangle lists of slabs: at most `cache_bytes`, but always room for two; with voids
+/// also 12 bytes per vertex of the plane.
+class PrismSource final : public MeshSource {
+ public:
+  /// @param quality  null: no field `quality`.
+  explicit PrismSource(const PrismMesh& mesh, PrismQuality quality = {}, std::size_t cache_bytes = std::size_t{32} << 20);
+
+  void fill_nodes(std::int64_t first, std::span<std::array<double, 3>> out) override { mesh_.fill_nodes(first, out); }
+  void visit(std::size_t block, const VisitNodes& visit) override;
+  [[nodiscard]] bool has_field(CellField field) const override { return field != CellField::quality || quality_ != nullptr; }
+  void visit_field(std::size_t block, CellField field, const VisitValues& visit) override;
+  [[nodiscard]] const PrismMesh* prisms() const override { return &mesh_; }
+
+ private:
+  struct SlabGroups {
+    std::int32_t slab = -1;
+    std::uint64_t last_use = 0;
+    std::vector<std::int32_t> offsets, triangles;
+  };
+  struct LevelRanks {
+    std::int32_t level = -1;
+    std::uint64_t last_use = 0;
+    std::vector<std::int32_t> ranks;
+  };
+  class Rows;
+  void survey_volumes();
+  void survey_faces();
+  /// Index into face_tags or volume_tags of a block.
+  [[nodiscard]] std::int32_t tag_index_of(const ElementBlock& block) const;
+  void visit_caps(std::int32_t tag_index, Rows& rows) const;
+  void visit_walls(std::int32_t tag_index, Rows& rows) const;
+  void visit_wedges(std::int32_t tag_index, Rows& rows);
+  /// Calls visit(sub-layer, triangles) for a few triangles through all sub-layers, then the next few: the order of all prisms.
+  template <class Visit>
+  void visit_pieces(std::int32_t tag_index, Visit&& visit);
+  void visit_sublayer(std::int32_t sublayer, std::span<const std::array<std::int32_t, 3>> triangles,
+                      std::span<const std::int32_t> low_ranks, std::span<const std::int32_t> high_ranks, Rows& rows) const;
+  /// Node ids of a level by vertex, minus the level's first id; empty if they are the vertices themselves.
+  [[nodiscard]] std::span<const std::int32_t> ranks_of(std::int32_t level);
+  [[nodiscard]] std::span<const std::int32_t> triangles_of(std::int32_t slab, std::int32_t tag_index);
+
+  PrismMesh mesh_;
+  PrismQuality quality_;
+  std::vector<std::vector<std::int32_t>> slabs_of_tag_;
+  std::vector<SlabGroups> cache_;
+  std::array<LevelRanks, 3> level_ranks_;  ///< bottom, inside and top of the slab that is being written
+  std::size_t max_cached_ = 2;
+  std::uint64_t clock_ = 0;
+};
+
+}  // namespace pcbmesh::mesh
