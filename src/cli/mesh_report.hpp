@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "pcbmesh/board/board.hpp"
+#include "pcbmesh/layering/divide_layers.hpp"
 #include "pcbmesh/layering/quality_report.hpp"
 #include "pcbmesh/pipeline/mesh_board.hpp"
 #include "pcbmesh/validation/report.hpp"
@@ -16,8 +17,9 @@ struct MeshRun {
   const board::Board& board;
   const pipeline::MeshBoardResult& result;
   layering::QualityReport quality;
-  const validation::Report* check = nullptr;  ///< null: not checked
-  std::vector<std::string> files;             ///< written, in order
+  std::vector<layering::LayerExplanation> layers;  ///< one per slab
+  const validation::Report* check = nullptr;       ///< null: not checked
+  std::vector<std::string> files;                  ///< written, in order
 };
 
 /// JSON for machines: x.report.json and --json. @unit as the keys say.

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,8 +16,10 @@ struct StudyOptions {
   std::string file, nets, margin, region, conductors, air, air_above, air_below, air_around, frequency, longest_edge,
       edge_at_copper, seed, policy, sublayers, tolerance, arc_sagitta, unit, problem, solver, sweep;
   std::vector<std::string> hollow, solid, sheet, ports, boundaries;
-  bool smooth = false;
+  bool smooth = false, paper_compat = false;
   double min_angle = 0, growth = 0, max_prisms = 0;
+  std::optional<double> elements_per_wavelength, height_growth, target_quality, budget_prisms, budget_unknowns;
+  std::optional<int> elements_per_dielectric, skin_depth_layers;
 };
 
 /// Adds the flags to a command.
