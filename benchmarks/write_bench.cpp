@@ -17,6 +17,7 @@
 #include <tuple>
 #include <vector>
 
+#include "formats/balance/face_balance.hpp"
 #include "formats/msh/format.hpp"
 #include "formats/vtu/format.hpp"
 #include "pcbmesh/mesh/prism_mesh.hpp"
@@ -142,7 +143,7 @@ double median(std::vector<double> values) {
 void measure(const mesh::PrismMesh& mesh, const formats::MeshFormat& format, const std::string& version,
              const std::filesystem::path& folder, std::string_view what) {
   const auto mesh_file = folder / "pcbmesh_write_bench.mesh", raw_file = folder / "pcbmesh_write_bench.raw";
-  std::vector<double> written, raw, ratios, cpu_ratios;
+  std::vector<double> written, raw, ratios, cpu_ratios, balance_ratios;
   double growth = 0;
   std::uint64_t size = 0;
   for (int pair = 0; pair < num_pairs; ++pair) {
@@ -157,6 +158,14 @@ void measure(const mesh::PrismMesh& mesh, const formats::MeshFormat& format, con
     growth = std::max(growth, peak_mb() - before);
     size = std::filesystem::file_size(mesh_file);
     std::filesystem::remove(mesh_file);
+    const Seconds balanced = seconds_of([&] {
+      mesh::PrismSource source(mesh);
+      formats::FaceBalance balance(source);
+      format.write(balance, mesh_file, {.version = version}, Progress{});
+      if (!balance.is_complete() || !balance.is_balanced()) std::abort();
+    });
+    std::filesystem::remove(mesh_file);
+    balance_ratios.push_back(balanced.cpu / ours.cpu);
     const Seconds plain = seconds_of([&] { write_raw(raw_file, size); });
     std::filesystem::remove(raw_file);
     written.push_back(ours.wall);
@@ -164,8 +173,11 @@ void measure(const mesh::PrismMesh& mesh, const formats::MeshFormat& format, con
     ratios.push_back(ours.wall / plain.wall);
     cpu_ratios.push_back(ours.cpu / plain.cpu);
   }
-  fmt::print("{:<16} {:>7.1f} MB  write {:.3f} s  raw {:.3f} s  ratio {:.2f}  CPU ratio {:.2f}  peak growth {:.1f} MB\n", what,
-             static_cast<double>(size) * 1e-6, median(written), median(raw), median(ratios), median(cpu_ratios), growth);
+  fmt::print(
+      "{:<16} {:>7.1f} MB  write {:.3f} s  raw {:.3f} s  ratio {:.2f}  CPU ratio {:.2f}  peak growth {:.1f} MB  with face "
+      "balance CPU x {:.2f}\n",
+      what, static_cast<double>(size) * 1e-6, median(written), median(raw), median(ratios), median(cpu_ratios), growth,
+      median(balance_ratios));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/balance/face_balance.hpp"
 #include "formats/kicad/format.hpp"
 #include "formats/msh/format.hpp"
 #include "formats/native_json/format.hpp"
@@ -136,7 +137,16 @@ ReadBoardResult read_board(const std::filesystem::path& file, std::string_view f
 void write_mesh(const mesh::PrismMesh& mesh, const std::filesystem::path& file, const WriteMeshOptions& options,
                 std::string_view format, const Progress& progress) {
   mesh::PrismSource source(mesh);
-  write_mesh(source, file, options, format, progress);
+  FaceBalance balance(source);
+  write_mesh(balance, file, options, format, progress);
+  if (!balance.is_complete() || balance.is_balanced()) return;
+  // Better no file than one with a hole in it.
+  std::error_code ignored;
+  std::filesystem::remove(file, ignored);
+  throw Error(ErrorCode::internal,
+              "the faces of the cells that were written do not add up to the faces of the hull; the file was removed, please "
+              "report this",
+              {.file = file.string()});
 }
 
 void write_mesh(mesh::MeshSource& source, const std::filesystem::path& file, const WriteMeshOptions& options,

@@ -96,7 +96,7 @@ inline std::vector<Fault> tag_faults() {
          d.c.expectation.unit_m = 1e-3;
          return "volume.wrong";
        },
-       {"face.area", "layer.off_level", "layer.outside", "layer.incomplete", "limit.edge", "periodic.unmatched"}},
+       {"face.area", "layer.off_level", "layer.outside", "layer.incomplete", "limit.edge"}},
       {"a net cut in two",
        [](Damage& d) {
          retag(d, 5, 6, 1, 2, 1, Damage::copper_layer_fill);

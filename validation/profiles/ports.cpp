@@ -87,24 +87,34 @@ bool touches(const std::set<NodePair>& rim, std::span<const std::int64_t> corner
   return false;
 }
 
-/// Nets of solid copper with a cell at the rim.
+/// Nets of solid copper with a face at the rim.
 void add_solid_conductors(const checks::Context& context, const std::set<NodePair>& rim, std::set<std::string>& found) {
   if (context.expectation == nullptr) return;
-  std::set<std::int64_t> nodes;
-  for (const NodePair& edge : rim) nodes.insert(edge.begin(), edge.end());
+  std::vector<std::string> conductor_of(static_cast<std::size_t>(context.cell_tags.size()));
   for (const auto& volume : context.expectation->volumes) {
-    if (!volume.conductor) continue;
-    const std::string name = volume.net.empty() ? volume.name : "net " + volume.net;
-    for (std::int64_t cell = 0; cell < context.num_cells() && !found.contains(name); ++cell) {
-      if (context.tag_of_cell(cell) != volume.tag) continue;
-      const auto corners = context.corners_of_cell(cell);
-      if (std::ranges::count_if(corners, [&](std::int64_t node) { return nodes.contains(node); }) < 2) continue;
-      std::array<std::int64_t, 4> ids{};
-      for (std::int64_t f = 0;
-           f < static_cast<std::int64_t>(checks::faces_of(context.mesh.cells[context.locate_cell(cell).first].kind).size());
-           ++f) {
-        const auto n = static_cast<std::size_t>(context.corners_of_half_face(cell << 3 | f, ids));
-        if (touches(rim, std::span(ids).first(n))) found.insert(name);
+    const int slot = context.cell_tags.slot(volume.tag);
+    if (slot < 0 || !volume.conductor) continue;
+    conductor_of[static_cast<std::size_t>(slot)] = volume.net.empty() ? volume.name : "net " + volume.net;
+  }
+  std::vector<std::uint8_t> is_at_rim(context.mesh.nodes.size(), 0);
+  for (const NodePair& edge : rim) {
+    for (const std::int64_t node : edge) is_at_rim[static_cast<std::size_t>(node)] = 1;
+  }
+  for (std::size_t b = 0; b < context.mesh.cells.size(); ++b) {
+    const mesh::CellBlock& block = context.mesh.cells[b];
+    const auto n = static_cast<std::size_t>(corners_of(block.kind));
+    for (std::int64_t i = 0; i < block.size(); ++i) {
+      const auto index = static_cast<std::size_t>(i);
+      const std::string& name = conductor_of[static_cast<std::size_t>(context.cell_tags.slot(block.tags[index]))];
+      if (name.empty() || found.contains(name)) continue;
+      const auto corners = std::span(block.corners).subspan(index * n, n);
+      const auto at_rim = [&](std::int64_t node) { return is_at_rim[static_cast<std::size_t>(node)] != 0; };
+      if (std::ranges::count_if(corners, at_rim) < 2) continue;
+      for (const checks::LocalFace& face : checks::faces_of(block.kind)) {
+        std::array<std::int64_t, 4> ids{};
+        const auto size = static_cast<std::size_t>(face.num_corners);
+        for (std::size_t k = 0; k < size; ++k) ids[k] = corners[static_cast<std::size_t>(face.corners[k])];
+        if (touches(rim, std::span<const std::int64_t>(ids).first(size))) found.insert(name);
       }
     }
   }
