@@ -260,11 +260,18 @@ void CheckLog::give(Finding finding) {
   run_.num_found += finding.count;
   Given& given = given_.try_emplace(finding.code).first->second;
   given.severity = finding.severity;
-  if (++given.findings > max_findings_of_a_code) {
+  is_last_kept_ = ++given.findings <= max_findings_of_a_code;
+  if (!is_last_kept_) {
     given.count_beyond += finding.count;
     return;
   }
   report_.findings.push_back(std::move(finding));
+}
+
+void CheckLog::describe_last(std::vector<std::string> nets, std::string layer) {
+  if (!is_last_kept_) return;
+  report_.findings.back().nets = std::move(nets);
+  report_.findings.back().layer = std::move(layer);
 }
 
 }  // namespace pcbmesh::validation::checks

@@ -97,7 +97,8 @@ def kind_of_complaint(line):
 
 def learn_openfoam(file):
     """What checkMesh says of a good mesh of thin layers too (small determinants) is no verdict on damage."""
-    _, text, _ = openfoam_check(file, lambda words: usual_complaints.update(kind_of_complaint(line) for line in words.splitlines() if line.strip().startswith("***")))
+    _, text, _ = openfoam_check(file, lambda words: usual_complaints.update({kind_of_complaint(line) for line in words.splitlines() if line.strip().startswith("***")} |
+                                                               set(re.findall(r"Found \\d+ undefined faces", words))))
     return text
 
 
@@ -120,12 +121,13 @@ def openfoam_check(file, look=lambda words: None):
             return "refuses", " ".join(fatal)[:90], 0.0
         extra = re.search(r"Found (\d+) undefined faces", text)
         code, text, cpu = run(["checkMesh", "-case", case, "-allGeometry", "-allTopology"])
-        look(text)
+        look(text + ("\n***" + extra[0] if extra else ""))
         stars = [line.strip() for line in text.splitlines() if line.strip().startswith("***") and kind_of_complaint(line) not in usual_complaints]
         if stars:
             return "found", stars[0][:90], cpu
-        if extra:
-            return "found", f"{extra[1]} undefined faces", cpu
+        undefined = extra[0] if extra else ""
+        if undefined not in usual_complaints and undefined:
+            return "found", undefined, cpu
         if "Mesh OK" not in text and "***" not in text:
             return "refuses", text.strip().splitlines()[-1][:90], cpu
         return "passes", "", cpu
