@@ -19,7 +19,7 @@ inline const char* name_of(Cells cells) {
   return cells == Cells::prisms ? "prisms" : cells == Cells::tetrahedra ? "tetrahedra" : "mixed";
 }
 
-/// Eight by eight squares of 1 mm in four layers: core, copper (strip A along y = 1..2 mm, strip B along y = 5..6 mm with a
+/// Eight by eight squares of 1 mm in four layers: core, copper (strip A along y = 7..8 mm, strip B along y = 5..6 mm with a
 /// gap), prepreg, cover. On it a sheet, a lumped port between sheet and ground, a wave port, and two periodic sides.
 class Damage {
  public:
@@ -42,7 +42,7 @@ class Damage {
     for (int k = 0; k < 4; ++k) {
       for (int y = 0; y < n; ++y) {
         for (int x = 0; x < n; ++x) {
-          plan.labels.push_back(k == 0 ? 0 : k == 2 ? 4 : k == 3 ? 5 : y == 1 ? 1 : y == 5 && x != 4 ? 2 : 3);
+          plan.labels.push_back(k == 0 ? 0 : k == 2 ? 4 : k == 3 ? 5 : y == 7 ? 1 : y == 5 && x != 4 ? 2 : 3);
         }
       }
     }

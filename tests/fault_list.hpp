@@ -24,7 +24,7 @@ inline std::vector<Fault> tag_faults() {
          d.tag(d.pick(d.cells_in(5, 7, 2, 5, 1))) = Damage::copper_b;
          return "volume.wrong";
        },
-       {"volume.cell_count", "net.open", "net.short"}},
+       {"volume.cell_count", "net.open"}},
       {"a cell under a group of another layer",
        [](Damage& d) {
          d.tag(d.pick(d.cells_in(5, 7, 2, 5, 2))) = Damage::cover;
@@ -99,13 +99,13 @@ inline std::vector<Fault> tag_faults() {
        {"face.area", "layer.off_level", "layer.outside", "layer.incomplete", "limit.edge"}},
       {"a net cut in two",
        [](Damage& d) {
-         retag(d, 5, 6, 1, 2, 1, Damage::copper_layer_fill);
+         retag(d, 5, 6, 7, 8, 1, Damage::copper_layer_fill);
          return "net.open";
        },
        counts},
       {"a bridge between nets",
        [](Damage& d) {
-         retag(d, 6, 7, 2, 5, 1, Damage::copper_a);
+         retag(d, 6, 7, 6, 7, 1, Damage::copper_a);
          return "net.short";
        },
        counts},

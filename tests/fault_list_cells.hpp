@@ -116,7 +116,7 @@ inline std::vector<Fault> array_faults() {
          d.c.mesh.cells.clear();
          return "mesh.empty";
        },
-       {"node.orphan", "face.tagged_no_cell", "tag.missing", "tag.empty_group", "layer.incomplete"}},
+       {"node.orphan", "net.open", "face.tagged_no_cell", "tag.missing", "tag.empty_group", "layer.incomplete"}},
       {"a coordinate is no number",
        [](Damage& d) {
          d.at(d.inner_node(2))[1] = std::nan("");

@@ -96,10 +96,12 @@ def kind_of_complaint(line):
 
 
 def learn_openfoam(file):
-    """What checkMesh says of a good mesh of thin layers too (small determinants) is no verdict on damage."""
-    _, text, _ = openfoam_check(file, lambda words: usual_complaints.update({kind_of_complaint(line) for line in words.splitlines() if line.strip().startswith("***")} |
-                                                               set(re.findall(r"Found \\d+ undefined faces", words))))
-    return text
+    """What is said of a good mesh of thin layers too (small determinants) is no verdict on damage. Returns it."""
+    def remember(words):
+        usual_complaints.update(kind_of_complaint(line) for line in words.splitlines() if line.strip().startswith("***"))
+        usual_complaints.update(re.findall(r"Found \d+ undefined faces", words))
+    openfoam_check(file, remember)
+    return "; ".join(sorted(complaint.strip("* ") for complaint in usual_complaints))
 
 
 CONTROL = """FoamFile { version 2.0; format ascii; class dictionary; object controlDict; }
@@ -121,7 +123,7 @@ def openfoam_check(file, look=lambda words: None):
             return "refuses", " ".join(fatal)[:90], 0.0
         extra = re.search(r"Found (\d+) undefined faces", text)
         code, text, cpu = run(["checkMesh", "-case", case, "-allGeometry", "-allTopology"])
-        look(text + ("\n***" + extra[0] if extra else ""))
+        look(text + "\n" + (extra[0] if extra else ""))
         stars = [line.strip() for line in text.splitlines() if line.strip().startswith("***") and kind_of_complaint(line) not in usual_complaints]
         if stars:
             return "found", stars[0][:90], cpu
