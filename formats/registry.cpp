@@ -12,8 +12,11 @@
 #include "formats/kicad/format.hpp"
 #include "formats/msh/format.hpp"
 #include "formats/native_json/format.hpp"
+#include "formats/native_mesh/format.hpp"
 #include "formats/syntax/input_file.hpp"
+#include "formats/vtkhdf/format.hpp"
 #include "formats/vtu/format.hpp"
+#include "formats/xdmf/format.hpp"
 #include "pcbmesh/base/error.hpp"
 #include "pcbmesh/mesh/prism_source.hpp"
 
@@ -22,7 +25,9 @@ namespace {
 
 // The tables: a new format is one include above and one line here.
 constexpr std::array<const BoardFormat*, 2> board_table{&native_json::board_format, &kicad::board_format};
-constexpr std::array<const MeshFormat*, 2> mesh_table{&msh::mesh_format, &vtu::mesh_format};
+constexpr std::array<const MeshFormat*, 7> mesh_table{&msh::mesh_format,        &vtu::mesh_format,  &vtu::parallel_format,
+                                                      &vtu::multiblock_format,  &xdmf::mesh_format, &vtkhdf::mesh_format,
+                                                      &native_mesh::mesh_format};
 
 constexpr std::size_t head_bytes = 4096;
 

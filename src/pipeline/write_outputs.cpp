@@ -8,6 +8,8 @@
 #include "formats/sink/file_sink.hpp"
 #include "formats/tags_json/tags_json.hpp"
 #include "pcbmesh/base/error.hpp"
+#include "pcbmesh/layering/prism_quality.hpp"
+#include "pcbmesh/mesh/prism_source.hpp"
 
 namespace pcbmesh::pipeline {
 namespace {
@@ -65,6 +67,12 @@ void write_text_file(const std::filesystem::path& file, std::string_view text) {
   sink.commit();
 }
 
+void write_binary_file(const std::filesystem::path& file, std::string_view bytes) {
+  formats::FileSink sink(file);
+  sink.put(bytes);
+  sink.commit();
+}
+
 OutputResult write_outputs(const MeshBoardResult& result, const OutputOptions& options, const Progress& progress) {
   OutputResult out;
   const std::filesystem::path tags = file_beside(options.meshes.front(), ".tags.json"),
@@ -73,8 +81,9 @@ OutputResult write_outputs(const MeshBoardResult& result, const OutputOptions& o
   const auto num_volumes = static_cast<std::int32_t>(result.mesh.volume_tags().size());
   formats::tags_json::write_tags(result.mesh, tags, options.write.unit, options.write.one_number_space ? num_volumes : 0);
   write_text_file(study, study::to_json(result.resolved));
+  mesh::PrismSource source(result.mesh, layering::prism_quality);
   for (const std::filesystem::path& file : options.meshes) {
-    formats::write_mesh(result.mesh, file, options.write, options.format, progress);
+    formats::write_mesh(source, file, options.write, options.format, progress);
     out.files.push_back(file.string());
   }
   out.files.push_back(tags.string());
