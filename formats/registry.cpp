@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/deck/one_number_space.hpp"
 #include "formats/kicad/format.hpp"
 #include "formats/msh/format.hpp"
 #include "formats/native_json/format.hpp"
@@ -157,7 +158,12 @@ void write_mesh(mesh::MeshSource& source, const std::filesystem::path& file, con
     throw Error(ErrorCode::usage,
                 fmt::format("{} is not written, only read; these are: {}", chosen.name, names_with(&MeshFormat::write)),
                 {.file = file.string()});
-  chosen.write(source, file, options, progress);
+  if (options.one_number_space) {
+    deck::OneNumberSpace numbered(source);
+    chosen.write(numbered, file, options, progress);
+  } else {
+    chosen.write(source, file, options, progress);
+  }
 }
 
 mesh::MeshData read_mesh(const std::filesystem::path& file, std::string_view format, const Progress& progress) {

@@ -12,6 +12,7 @@
 #include "pcbmesh/base/version.hpp"
 #include "src/cli/diagnostics_json.hpp"
 #include "src/cli/explain_text.hpp"
+#include "src/cli/forecast_report.hpp"
 #include "src/cli/quality_text.hpp"
 #include "src/cli/terminal.hpp"
 
@@ -106,6 +107,9 @@ std::string report_json(const MeshRun& run) {
            {"quality_report", quality_json(run.quality)},
            {"cpu_s", times},
            {"peak_memory_mib", peak_memory_mib()},
+           {"forecast", forecast_json(r.forecast)},
+           {"measured", run.measured ? forecast_json(*run.measured) : Json(nullptr)},
+           {"assumptions", assumptions_json(r.diagnostics)},
            {"diagnostics", diagnostics_json(r.diagnostics)},
            {"check", run.check == nullptr ? Json(nullptr) : Json::parse(validation::to_json(*run.check))},
            {"files", run.files}};
@@ -143,6 +147,13 @@ std::string report_text(const MeshRun& run) {
       errors += f.severity == validation::FindingSeverity::error ? f.count : 0;
     out += line("check", run.check->passed() ? fmt::format("passed: {} checks, no error", run.check->checks.size())
                                              : fmt::format("FAILED with {} errors", grouped(errors)));
+    std::int64_t as_laid_out = 0, judged = 0;
+    for (const validation::NetVerdict& net : run.check->nets) {
+      if (net.expected_pieces >= 0) ++judged;
+      if (net.expected_pieces == net.pieces) ++as_laid_out;
+    }
+    out += line("nets", fmt::format("{} of {} connected as in the layout, {} not judged", as_laid_out, judged,
+                                    static_cast<std::int64_t>(run.check->nets.size()) - judged));
     for (const validation::Finding& f : run.check->findings)
       out += fmt::format("    {} [{}] {}\n", f.severity == validation::FindingSeverity::error ? "error" : "warning", f.code,
                          f.text);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,11 +21,15 @@ struct MeshRun {
   std::vector<layering::LayerExplanation> layers;  ///< one per slab
   const validation::Report* check = nullptr;       ///< null: not checked
   std::vector<std::string> files;                  ///< written, in order
+  std::optional<pipeline::Forecast> measured{};    ///< exact sizes
 };
 
 /// JSON for machines: x.report.json and --json. @unit as the keys say.
 [[nodiscard]] std::string report_json(const MeshRun& run);
 /// The same for people, a dozen lines.
 [[nodiscard]] std::string report_text(const MeshRun& run);
+
+/// What was forecast beside what came, unknowns and solver memory.
+[[nodiscard]] std::string forecast_text(const MeshRun& run);
 
 }  // namespace pcbmesh::cli

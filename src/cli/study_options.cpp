@@ -56,6 +56,7 @@ std::shared_ptr<StudyOptions> add_study_options(CLI::App& command) {
   command.add_option("--air-above", o->air_above, "Air above the board")->group(domain);
   command.add_option("--air-below", o->air_below, "Air below the board")->group(domain);
   command.add_option("--air-around", o->air_around, "Air beside the whole board (default 0)")->group(domain);
+  o->fabrication = add_fabrication_options(command);
   add_physics_options(command, *o);
   constexpr const char* sizes = "Sizes and heights";
   command
@@ -150,6 +151,7 @@ study::Study study_from(const StudyOptions& o) {
   if (!o.arc_sagitta.empty()) s.arcs.sagitta_nm = parse_length(o.arc_sagitta);
   if (!o.unit.empty()) s.unit = parse_length_unit(o.unit);
   if (o.max_prisms != 0) s.max_prisms = count("--max-prisms", o.max_prisms);
+  take_fabrication_options(*o.fabrication, s.fabrication);
   take_physics_options(o, s);
   study::check(s);
   return s;

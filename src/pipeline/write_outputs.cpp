@@ -67,12 +67,19 @@ void write_text_file(const std::filesystem::path& file, std::string_view text) {
   sink.commit();
 }
 
+void write_binary_file(const std::filesystem::path& file, std::string_view bytes) {
+  formats::FileSink sink(file);
+  sink.put(bytes);
+  sink.commit();
+}
+
 OutputResult write_outputs(const MeshBoardResult& result, const OutputOptions& options, const Progress& progress) {
   OutputResult out;
   const std::filesystem::path tags = file_beside(options.meshes.front(), ".tags.json"),
                               study = file_beside(options.meshes.front(), ".resolved.json");
   // The contract first: whoever sees the mesh finds its meaning beside it.
-  formats::tags_json::write_tags(result.mesh, tags, options.write.unit);
+  const auto num_volumes = static_cast<std::int32_t>(result.mesh.volume_tags().size());
+  formats::tags_json::write_tags(result.mesh, tags, options.write.unit, options.write.one_number_space ? num_volumes : 0);
   write_text_file(study, study::to_json(result.resolved));
   mesh::PrismSource source(result.mesh, layering::prism_quality);
   for (const std::filesystem::path& file : options.meshes) {

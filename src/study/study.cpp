@@ -135,7 +135,7 @@ bool Study::operator==(const Study& other) const {
          arcs.sagitta_nm == other.arcs.sagitta_nm && arcs.mode == other.arcs.mode && unit == other.unit &&
          max_prisms == other.max_prisms && conductor_surface == other.conductor_surface && problem == other.problem &&
          solver == other.solver && ports == other.ports && boundaries == other.boundaries && sweep == other.sweep &&
-         modes == other.modes;
+         modes == other.modes && fabrication == other.fabrication;
 }
 
 std::optional<double> highest_frequency_hz(const Study& study) {
@@ -154,6 +154,7 @@ std::vector<Fault> faults_of(const Study& study) {
   if (study.max_prisms < 1)
     faults.add("/limits/max_prisms", fmt::format("{} is out of range; expected at least 1", study.max_prisms));
   check_physics(study, faults);
+  check_fabrication(study.fabrication, faults);
   return faults.take();
 }
 

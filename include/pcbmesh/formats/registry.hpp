@@ -48,10 +48,11 @@ struct WriteMeshOptions {
   Compression compression = Compression::none;  ///< VTK and HDF5 family; HDF5 knows zlib alone
   bool base64 = false;                          ///< VTK XML: arrays as base64 text, which makes the file valid XML
   VtkWedge vtk_wedge = VtkWedge::legacy;
-  bool faces = false;   ///< VTU and PVTU: tagged faces as cells too
-  int num_parts = 2;    ///< PVTU: pieces, at least 1
-  int index_bits = 0;   ///< VTK and HDF5 family: 32 or 64; 0 = 32 where they suffice
-  int num_threads = 1;  ///< for compression; the bytes are the same for any number
+  bool faces = false;             ///< VTU and PVTU: tagged faces as cells too
+  int num_parts = 2;              ///< PVTU: pieces, at least 1
+  int index_bits = 0;             ///< VTK and HDF5 family: 32 or 64; 0 = 32 where they suffice
+  int num_threads = 1;            ///< for compression; the bytes are the same for any number
+  bool one_number_space = false;  ///< face groups are numbered after the volume groups (GetDP knows one kind of number)
 };
 
 /// A mesh format. `write` or `read` may be null.

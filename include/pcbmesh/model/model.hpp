@@ -32,7 +32,8 @@ enum class BodyKind {
   board,   ///< body 1: inside of the board outline, cut-outs excluded
   copper,  ///< tracks, pads, fills of one net on one copper slab
   hole,    ///< unplated hole: material of the body (air), or void if material is -1
-  barrel,  ///< plated hole: filled with copper of its net
+  barrel,  ///< plated hole: copper of its net
+  filler,  ///< air or dielectric that takes a place of its own: inside of a tube, backdrilled hole, mask over copper
   port     ///< footprint of a port: fills nothing, its edges are kept straight
 };
 
