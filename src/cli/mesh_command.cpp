@@ -54,7 +54,7 @@ pipeline::OutputOptions output_options(const Options& options, LengthUnit unit) 
   write.num_parts = options.num_parts;
   write.index_bits = options.index_bits;
   write.num_threads = options.threads;
-  return {{options.outputs.begin(), options.outputs.end()}, options.to, write, !options.no_check, options.threads};
+  return {{options.outputs.begin(), options.outputs.end()}, options.to, write, !options.no_check, options.threads, options.board};
 }
 
 int run(const Options& options) {
@@ -178,8 +178,9 @@ Command add_mesh_command(CLI::App& program) {
       ->group(output);
   options->study = add_study_options(*command);
   command->footer(
-      "Beside board.msh appear board.tags.json (what each tag means), board.resolved.json (every choice, filled in) and\n"
-      "board.report.json (counts, quality, times, moves, verdict).\n\n"
+      "Beside board.msh appear board.tags.json (what each tag means), board.resolved.json (every choice, filled in),\n"
+      "board.report.json (counts, quality, times, moves, verdict) and board.certificate.json (hashes, checks, volumes;\n"
+      "'pcbmesh check --certificate' compares).\n\n"
       "Examples:\n"
       "  pcbmesh mesh board.kicad_pcb -o board.msh\n"
       "  pcbmesh mesh board.kicad_pcb --nets /USB_P,/USB_N --frequency 10GHz -o usb.msh -o usb.vtu\n"

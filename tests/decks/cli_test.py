@@ -36,7 +36,7 @@ class Cli(unittest.TestCase):
     def test_mesh_writes_the_mesh_its_contract_study_and_report(self):
         done = run("mesh", SERPENTINE, "--air", "0", "-o", self.out / "a.msh")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertEqual(self.leftovers(), ["a.msh", "a.report.json", "a.resolved.json", "a.tags.json"])
+        self.assertEqual(self.leftovers(), ["a.certificate.json", "a.msh", "a.report.json", "a.resolved.json", "a.tags.json"])
         self.assertIn("passed", done.stdout)
         again = run("mesh", SERPENTINE, "--study", self.out / "a.resolved.json", "-o", self.out / "b.msh")
         self.assertEqual(again.returncode, 0, again.stderr)
