@@ -94,7 +94,7 @@ int run(const Options& options) {
     }
     const std::filesystem::path summary = pipeline::file_beside(output.meshes.front(), ".report.json");
     mesh_run.files = written.files;
-    if (result.resolved.solver != study::Solver::none) {
+    if (writes_deck(result.resolved)) {
       Diagnostics assumed;
       deck = write_solver_deck(result, output.meshes.front(), assumed);
       if (!options.quiet) print_diagnostics(assumed);
