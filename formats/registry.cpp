@@ -8,11 +8,16 @@
 #include <string>
 #include <vector>
 
+#include "formats/balance/face_balance.hpp"
+#include "formats/deck/one_number_space.hpp"
 #include "formats/kicad/format.hpp"
 #include "formats/msh/format.hpp"
 #include "formats/native_json/format.hpp"
+#include "formats/native_mesh/format.hpp"
 #include "formats/syntax/input_file.hpp"
+#include "formats/vtkhdf/format.hpp"
 #include "formats/vtu/format.hpp"
+#include "formats/xdmf/format.hpp"
 #include "pcbmesh/base/error.hpp"
 #include "pcbmesh/mesh/prism_source.hpp"
 
@@ -21,7 +26,9 @@ namespace {
 
 // The tables: a new format is one include above and one line here.
 constexpr std::array<const BoardFormat*, 2> board_table{&native_json::board_format, &kicad::board_format};
-constexpr std::array<const MeshFormat*, 2> mesh_table{&msh::mesh_format, &vtu::mesh_format};
+constexpr std::array<const MeshFormat*, 7> mesh_table{&msh::mesh_format,        &vtu::mesh_format,  &vtu::parallel_format,
+                                                      &vtu::multiblock_format,  &xdmf::mesh_format, &vtkhdf::mesh_format,
+                                                      &native_mesh::mesh_format};
 
 constexpr std::size_t head_bytes = 4096;
 
@@ -152,7 +159,23 @@ void write_mesh(mesh::MeshSource& source, const std::filesystem::path& file, con
     throw Error(ErrorCode::usage,
                 fmt::format("{} is not written, only read; these are: {}", chosen.name, names_with(&MeshFormat::write)),
                 {.file = file.string()});
-  chosen.write(source, file, options, progress);
+  // Only our own prisms promise a tagged hull; a mesh from elsewhere is written as it is, holes and all.
+  FaceBalance balance(source);
+  mesh::MeshSource& watched = source.prisms() != nullptr ? balance : source;
+  if (options.one_number_space) {
+    deck::OneNumberSpace numbered(watched);
+    chosen.write(numbered, file, options, progress);
+  } else {
+    chosen.write(watched, file, options, progress);
+  }
+  if (source.prisms() == nullptr || !balance.is_complete() || balance.is_balanced()) return;
+  // Better no file than one with a hole in it.
+  std::error_code ignored;
+  std::filesystem::remove(file, ignored);
+  throw Error(ErrorCode::internal,
+              "the faces of the cells that were written do not add up to the faces of the hull; the file was removed, please "
+              "report this",
+              {.file = file.string()});
 }
 
 mesh::MeshData read_mesh(const std::filesystem::path& file, std::string_view format, const Progress& progress) {

@@ -94,12 +94,12 @@ Json materials(const mesh::PrismMesh& mesh) {
   return out;
 }
 
-Json faces(const mesh::PrismMesh& mesh) {
+Json faces(const mesh::PrismMesh& mesh, std::int32_t first_face_id) {
   Json out = Json::array();
   const std::vector<std::string> names = names_of(mesh.face_tags());
   for (std::size_t i = 0; i < names.size(); ++i) {
     const mesh::FaceTag& tag = mesh.face_tags()[i];
-    out.push_back({{"id", tag.id},
+    out.push_back({{"id", tag.id + first_face_id},
                    {"dimension", 2},
                    {"name", names[i]},
                    {"kind", mesh::name_of(tag.kind)},
@@ -199,14 +199,14 @@ Json bounding_box(const mesh::PrismMesh& mesh) {
 
 }  // namespace
 
-void write_tags(const mesh::PrismMesh& mesh, const std::filesystem::path& file, LengthUnit unit) {
+void write_tags(const mesh::PrismMesh& mesh, const std::filesystem::path& file, LengthUnit unit, std::int32_t first_face_id) {
   Json out;
   out["schema_version"] = schema_version;
   out["unit_m"] = metres_per(unit);
   out["bounding_box_m"] = bounding_box(mesh);
   out["layers"] = layers(mesh);
   out["volumes"] = volumes(mesh);
-  out["faces"] = faces(mesh);
+  out["faces"] = faces(mesh, first_face_id);
   out["ports"] = ports(mesh);
   out["materials"] = materials(mesh);
   out["nets"] = nets(mesh);

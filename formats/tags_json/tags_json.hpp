@@ -16,7 +16,9 @@ inline constexpr double conductor_sigma_s_per_m = 1e3;
 /// Layout: docs/schema/tags.schema.json. Areas, volumes and the box are in metres whatever the unit of the mesh file.
 /// Nets are listed if they have copper cells, skins or sheets; pieces null = not known.
 /// @param unit  of the mesh file.
+/// @param first_face_id  added to the ids of face groups, as in a mesh file of one number space.
 /// @throws Error write_failed (701); the file appears whole or not at all.
-void write_tags(const mesh::PrismMesh& mesh, const std::filesystem::path& file, LengthUnit unit);
+void write_tags(const mesh::PrismMesh& mesh, const std::filesystem::path& file, LengthUnit unit,
+                std::int32_t first_face_id = 0);
 
 }  // namespace pcbmesh::formats::tags_json

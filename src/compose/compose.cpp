@@ -191,6 +191,21 @@ ResolvedNames resolve_names(const Board& board, const Study& study, MaterialTabl
   return names;
 }
 
+/// The paper projects the outline of every feature, those inside other copper too; here copper of a net is united before. Each
+/// shape as a body of its own keeps its outline.
+void keep_every_outline(model::ModelParts& parts) {
+  std::vector<bool> is_taken(parts.bodies.size(), false);
+  for (model::BodyShape& shape : parts.shapes) {
+    const auto body = static_cast<std::size_t>(shape.body);
+    if (is_taken[body]) {
+      shape.body = static_cast<std::int32_t>(parts.bodies.size());
+      parts.bodies.push_back(model::Body(parts.bodies[body]));
+    } else {
+      is_taken[body] = true;
+    }
+  }
+}
+
 }  // namespace
 
 model::Model compose(const Board& board, const Study& study, Diagnostics& diagnostics) {
@@ -213,6 +228,7 @@ model::Model compose(const Board& board, const Study& study, Diagnostics& diagno
   add_copper(board, study, names.rules, footprint, stack, parts, diagnostics);
   add_holes(board, study, names.rules, names.holes, footprint, stack, parts, diagnostics);
   add_mask(board, study, footprint, stack, parts, diagnostics);
+  if (study.paper_compat) keep_every_outline(parts);
   std::vector<study::Fault> faults;
   add_ports(board, study, names.rules, footprint, stack, parts, faults);
   if (!names.unknown.empty() || !faults.empty()) {
@@ -230,6 +246,17 @@ model::Model compose(const Board& board, const Study& study, Diagnostics& diagno
   parts.materials = materials.take();
   parts.slabs = std::move(stack.slabs);
   return model::Model::from_parts(std::move(parts));
+}
+
+std::vector<PortProposal> propose_ports(const Board& board, const Study& study, Diagnostics& diagnostics) {
+  study::check(study);
+  MaterialTable materials(board, study, diagnostics);
+  const ResolvedNames names = resolve_names(board, study, materials);
+  if (!names.unknown.empty()) throw Error(ErrorCode::name_unknown, names.unknown, {.file = board.source()});
+  const Footprint footprint = build_footprint(board, study, names.nets, diagnostics);
+  const Stack stack =
+      build_stack(board, study, find_sheet_layers(board, study, names.rules, footprint), names.fills, materials, diagnostics);
+  return find_ports(board, study, names.rules, footprint, stack, names.nets);
 }
 
 }  // namespace pcbmesh::compose

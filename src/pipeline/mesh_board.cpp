@@ -48,10 +48,10 @@ class Stopwatch {
 
 Nm longest_edge_nm(const study::Study& study, const model::Model& model) {
   std::optional<Nm> edge = study.longest_edge;
-  if (study.frequency_hz) {
+  if (const std::optional<double> frequency_hz = study::highest_frequency_hz(study)) {
     double slowest = 1;
     for (const model::Slab& slab : model.slabs()) slowest = std::max(slowest, layering::slowness(model, slab));
-    const double wavelength_m = speed_of_light_m_per_s / *study.frequency_hz / slowest;
+    const double wavelength_m = speed_of_light_m_per_s / *frequency_hz / slowest;
     const double edge_m = wavelength_m / study.height_bounds.elements_per_wavelength;
     const auto bound = static_cast<Nm>(std::max(1.0, std::floor(edge_m / metres_per_nm)));
     edge = std::min(edge.value_or(bound), bound);
@@ -79,8 +79,10 @@ std::int64_t num_prisms(const mesh::PlanarMesh& planar, const mesh::LayerPlan& p
 
 }  // namespace
 
-MeshBoardResult mesh_board(const board::Board& board, const study::Study& study, const Progress& progress) {
-  study::check(study);
+MeshBoardResult mesh_board(const board::Board& board, const study::Study& given, const Progress& progress) {
+  study::check(given);
+  study::Study study = given;
+  study.frequency_hz = study::highest_frequency_hz(given);
   Diagnostics diagnostics;
   std::vector<StepTime> times;
   Stopwatch timed(times);
@@ -104,6 +106,7 @@ MeshBoardResult mesh_board(const board::Board& board, const study::Study& study,
   if (study.edge_at_copper) options.grading = triangulate::Grading{static_cast<double>(*study.edge_at_copper), study.growth};
   options.seed = study.seed == study::TriangleSeed::hex ? triangulate::Seed::hexagonal : triangulate::Seed::delaunay;
   options.smooth = study.smooth;
+  options.split_sheet_chords = study.solver == study::Solver::palace;
   options.as_in_paper = study.paper_compat;
   triangulate::TriangulateResult planar =
       timed("triangulate", [&] { return triangulate::triangulate(graph.graph, model, options, diagnostics, progress); });
@@ -139,15 +142,18 @@ MeshBoardResult mesh_board(const board::Board& board, const study::Study& study,
     require_few_unknowns(expected, study);
     if (feedback_m) {
       const double triangles = area_m2(planar.mesh) / (area_over_edge_squared * *feedback_m * *feedback_m);
+      // The sub-layers of the final mesh are not known yet; by the common height they are not far off.
+      double sublayers = 0;
+      for (const model::Slab& slab : model.slabs()) sublayers += layering::forecast_sublayers(study, slab, *height_m);
       require_budget(
-          triangles * static_cast<double>(model.slabs().size()), study,
+          triangles * sublayers, study,
           fmt::format("height policy '{}' with edges of {:.4g} um", study::name_of(study.policy), *feedback_m * 1e6));
       options.longest_edge_nm = *feedback_m / metres_per_nm;
       planar = timed("triangulate again",
                      [&] { return triangulate::triangulate(graph.graph, model, options, diagnostics, progress); });
       heights = layering::height_statistics(planar.mesh);
     }
-    counts = study.paper_compat ? layering::paper_counts(model.slabs(), study.policy, height_m.value_or(0))
+    counts = study.paper_compat ? layering::paper_counts(model.slabs(), study.policy)
                                 : layering::sublayer_counts(model.slabs(), study.sublayers, height_m, heights);
   }
 

@@ -34,10 +34,25 @@ struct BoardFormat {
   ReadBoardResult (*read)(const std::filesystem::path& file, const Progress& progress);
 };
 
+enum class Compression { none, zlib, lz4 };
+/// Order of a wedge's corners in VTU and VTKHDF files. VTK up to 9.6, Gmsh, meshio and MFEM take `legacy`: the normal of the
+/// first triangle points outwards. VTK from 9.7 on documents `parametric`, which is Gmsh's order.
+enum class VtkWedge { legacy, parametric };
+[[nodiscard]] std::string_view name_of(VtkWedge order);
+
+/// What the formats may be told; each takes what it knows and leaves the rest.
 struct WriteMeshOptions {
   bool binary = true;
   LengthUnit unit = LengthUnit::metre;
-  std::string version;  ///< format version, e.g. "4.1"; empty = the format's default
+  std::string version;                          ///< format version, e.g. "4.1"; empty = the format's default
+  Compression compression = Compression::none;  ///< VTK and HDF5 family; HDF5 knows zlib alone
+  bool base64 = false;                          ///< VTK XML: arrays as base64 text, which makes the file valid XML
+  VtkWedge vtk_wedge = VtkWedge::legacy;
+  bool faces = false;             ///< VTU and PVTU: tagged faces as cells too
+  int num_parts = 2;              ///< PVTU: pieces, at least 1
+  int index_bits = 0;             ///< VTK and HDF5 family: 32 or 64; 0 = 32 where they suffice
+  int num_threads = 1;            ///< for compression; the bytes are the same for any number
+  bool one_number_space = false;  ///< face groups are numbered after the volume groups (GetDP knows one kind of number)
 };
 
 /// A mesh format. `write` or `read` may be null.

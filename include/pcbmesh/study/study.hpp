@@ -107,7 +107,7 @@ struct Study {
   Nm air_below = 1 * nm_per_mm;
   Nm air_around = 0;  ///< beside the board's bounding box (whole board only)
 
-  std::optional<double> frequency_hz;          ///< bounds the longest edge by a third of the local wavelength
+  std::optional<double> frequency_hz;          ///< bounds edges and heights by the local wavelength
   std::optional<Nm> longest_edge;              ///< empty = from the frequency, else 2 mm as in the paper
   double min_angle_deg = 20.7;                 ///< in (0, 28.6]
   std::optional<Nm> edge_at_copper;            ///< graded size: edge length at copper outlines
@@ -157,6 +157,19 @@ struct Study {
 
 /// The study as JSON, every default filled in; parse_study(to_json(s)) == s.
 [[nodiscard]] std::string to_json(const Study& study);
+
+/// Words that go into a study file and are not read.
+struct StudyWords {
+  std::string schema;                   ///< where the schema lies, for editors; empty = not said
+  std::string note;                     ///< empty = none
+  std::vector<std::string> port_notes;  ///< per port; missing or empty = none
+};
+[[nodiscard]] std::string to_json(const Study& study, const StudyWords& words);
+/// The ports alone, as a "ports" member ready to paste.
+[[nodiscard]] std::string ports_json(const Study& study, const StudyWords& words);
+
+/// docs/schema/study.schema.json, as this program was built with it.
+[[nodiscard]] std::string_view schema_text();
 
 /// One thing wrong with a study, by itself or on a board.
 struct Fault {
