@@ -54,7 +54,8 @@ pipeline::OutputOptions output_options(const Options& options, LengthUnit unit) 
   write.num_parts = options.num_parts;
   write.index_bits = options.index_bits;
   write.num_threads = options.threads;
-  return {{options.outputs.begin(), options.outputs.end()}, options.to, write, !options.no_check, options.threads, options.board};
+  return {
+      {options.outputs.begin(), options.outputs.end()}, options.to, write, !options.no_check, options.threads, options.board};
 }
 
 int run(const Options& options) {
