@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/balance/face_balance.hpp"
 #include "formats/deck/one_number_space.hpp"
 #include "formats/kicad/format.hpp"
 #include "formats/msh/format.hpp"
@@ -158,12 +159,23 @@ void write_mesh(mesh::MeshSource& source, const std::filesystem::path& file, con
     throw Error(ErrorCode::usage,
                 fmt::format("{} is not written, only read; these are: {}", chosen.name, names_with(&MeshFormat::write)),
                 {.file = file.string()});
+  // Only our own prisms promise a tagged hull; a mesh from elsewhere is written as it is, holes and all.
+  FaceBalance balance(source);
+  mesh::MeshSource& watched = source.prisms() != nullptr ? balance : source;
   if (options.one_number_space) {
-    deck::OneNumberSpace numbered(source);
+    deck::OneNumberSpace numbered(watched);
     chosen.write(numbered, file, options, progress);
   } else {
-    chosen.write(source, file, options, progress);
+    chosen.write(watched, file, options, progress);
   }
+  if (source.prisms() == nullptr || !balance.is_complete() || balance.is_balanced()) return;
+  // Better no file than one with a hole in it.
+  std::error_code ignored;
+  std::filesystem::remove(file, ignored);
+  throw Error(ErrorCode::internal,
+              "the faces of the cells that were written do not add up to the faces of the hull; the file was removed, please "
+              "report this",
+              {.file = file.string()});
 }
 
 mesh::MeshData read_mesh(const std::filesystem::path& file, std::string_view format, const Progress& progress) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "pcbmesh/validation/profiles.hpp"
 #include "validation/checks/checks.hpp"
 
 namespace pcbmesh::validation {
@@ -37,13 +38,22 @@ Report check(const mesh::MeshData& mesh, const Expectation* expectation, const C
     sums.of_tag.assign(sums.cells_of_tag.size(), 0);
   }
   checks::NetContacts nets(context);
-  const checks::FaceMatch match = checks::check_faces(context, nets.is_needed() ? &nets : nullptr, report);
+  checks::HeightGrowth growth(context);
+  const checks::FaceMatch match =
+      checks::check_faces(context, nets.is_needed() ? &nets : nullptr, growth.is_needed() ? &growth : nullptr, report);
   checks::check_boundary_edges(context, match, report);
   if (context.has_geometry) checks::check_boundary_overlaps(context, match, report);
+  if (context.has_geometry) checks::check_interiors(context, match, sums, report);
   checks::check_volumes(context, match, sums, report);
   checks::check_tags(context, sums.cells_of_tag, report);
   if (context.has_geometry) checks::check_face_groups(context, report);
   checks::check_nets(context, nets, options.netlist, report);
+  if (context.has_geometry) {
+    checks::check_layers(context, report);
+    checks::check_periodic(context, report);
+    checks::check_limits(context, growth, report);
+  }
+  if (options.profile != nullptr) options.profile->judge(context, match, report);
   return report;
 }
 

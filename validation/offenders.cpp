@@ -57,14 +57,20 @@ std::vector<Offender> offenders_of(const Report& report, const mesh::MeshData& m
     }
   };
   for (std::size_t f = 0; f < report.findings.size(); ++f) {
-    for (const Finding::Place& place : report.findings[f].places) {
+    const Finding& finding = report.findings[f];
+    const auto keep_elements = [&](std::int64_t cell, std::int64_t face, std::int64_t node) {
       Offender one;
       one.finding = f;
-      if (take(mesh.cells, place.cell, one)) keep(one);
+      if (take(mesh.cells, cell, one)) keep(one);
       one.is_face = true;
-      if (take(mesh.faces, place.face, one)) keep(one);
-      if (place.node >= 0) keep({{place.node}, 1, f, 0, false});
-    }
+      if (take(mesh.faces, face, one)) keep(one);
+      if (node >= 0) keep({{node}, 1, f, 0, false});
+    };
+    for (const std::int64_t cell : finding.cells) keep_elements(cell, -1, -1);
+    for (const std::int64_t face : finding.faces) keep_elements(-1, face, -1);
+    for (const std::int64_t node : finding.nodes) keep_elements(-1, -1, node);
+    if (!finding.cells.empty() || !finding.faces.empty() || !finding.nodes.empty()) continue;
+    for (const Finding::Place& place : finding.places) keep_elements(place.cell, place.face, place.node);
   }
   return all;
 }

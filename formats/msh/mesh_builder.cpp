@@ -163,6 +163,9 @@ void MeshBuilder::add_element(std::int32_t type, std::int64_t number, std::int32
   }
   if (tag < 0) source_.fail(fmt::format("element {} has physical group {}; groups are numbered from 1 here", number, tag));
   const Target target = target_of(type);
+  if (const int dimension = type_of(type).dimension; tag == 0 && dimension < 3) {
+    ++mesh_.num_untagged[static_cast<std::size_t>(dimension)];
+  }
   if (target.tags == nullptr) {
     ++mesh_.num_other_elements[type == Type::point ? 0 : 1];
     return;

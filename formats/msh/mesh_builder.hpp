@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -61,6 +62,7 @@ class MeshBuilder {
  public:
   explicit MeshBuilder(ByteSource& source) : source_(source) { mesh_.num_other_elements.assign(2, 0); }
 
+  void set_format(std::string version, bool is_binary) { mesh_.format = {"msh", std::move(version), is_binary}; }
   void add_name(int dimension, std::int32_t tag, std::string name);
   void add_node(std::int64_t number, const std::array<double, 3>& at) {
     numbers_.add(number);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -108,13 +109,18 @@ void Reader::end_section(std::string_view name) {
 void Reader::read_format() {
   if (std::exchange(has_format_, true)) source_.fail("the file has two headers");
   const std::string version(source_.word());
-  is_41_ = version == "4.1";
-  if (!is_41_ && version != "2.2" && version != "2.1" && version != "2" && version != "2.0")
+  // Netgen writes "2.000000": the number counts, not its spelling.
+  double number = 0;
+  const auto parsed = std::from_chars(version.data(), version.data() + version.size(), number);
+  const bool is_number = parsed.ec == std::errc() && parsed.ptr == version.data() + version.size();
+  is_41_ = is_number && number == 4.1;
+  if (!is_41_ && !(is_number && number >= 2 && number <= 2.2))
     source_.fail(fmt::format("MSH version '{}' is not read, only 4.1 and 2.2; convert it with Gmsh", version.substr(0, 20)));
   const std::int32_t kind = numbers_.integer(), data_size = numbers_.integer();
   if (kind != 0 && kind != 1) source_.fail(fmt::format("file type {} is neither 0 (text) nor 1 (binary)", kind));
   if (data_size != 8) source_.fail(fmt::format("numbers of {} bytes are not read, only of 8", data_size));
   source_.end_line();
+  builder_.set_format(is_41_ ? "4.1" : fmt::format("{:.1f}", number), kind == 1);
   if (kind == 0) return;
   binary_ = true;
   numbers_ = Numbers(source_, true);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,8 +12,10 @@
 #include "pcbmesh/base/error.hpp"
 #include "pcbmesh/formats/registry.hpp"
 #include "pcbmesh/pipeline/write_outputs.hpp"
+#include "pcbmesh/validation/certificate.hpp"
 #include "pcbmesh/validation/codes.hpp"
 #include "pcbmesh/validation/outputs.hpp"
+#include "pcbmesh/validation/profiles.hpp"
 #include "pcbmesh/validation/report.hpp"
 #include "src/cli/commands.hpp"
 #include "src/cli/terminal.hpp"
@@ -21,7 +24,7 @@ namespace pcbmesh::cli {
 namespace {
 
 struct Options {
-  std::string mesh, tags, format, explain, junit, sarif, html, offenders, netlist, board;
+  std::string mesh, tags, format, explain, junit, sarif, html, offenders, limits, profile, certificate, netlist, board;
   std::string fail_on = "error";
   bool no_tags = false, json = false, quiet = false, list = false;
   int threads = 2;
@@ -56,10 +59,20 @@ int explain(const std::string& code) {
   return 0;
 }
 
+const validation::Profile* profile_named(const std::string& name) {
+  if (const validation::Profile* profile = validation::find_profile(name)) return profile;
+  std::string all;
+  for (const validation::Profile* profile : validation::all_profiles()) {
+    all += fmt::format("{}{} ({})", all.empty() ? "" : "; ", profile->name, profile->title);
+  }
+  throw Error(ErrorCode::usage, fmt::format("--profile: there is no profile \"{}\". There are: {}", name, all));
+}
+
 /// A report must not land on what it reports on, nor two reports in one file.
 void require_distinct_files(const Options& options, const std::string& tags) {
   std::vector<std::filesystem::path> taken;
-  for (const std::string& file : {options.mesh, tags, options.junit, options.sarif, options.html, options.offenders}) {
+  for (const std::string& file : {options.mesh, tags, options.limits, options.certificate, options.junit, options.sarif,
+                                  options.html, options.offenders}) {
     if (file.empty()) continue;
     const std::filesystem::path full = std::filesystem::weakly_canonical(file);
     if (std::ranges::find(taken, full) != taken.end()) {
@@ -81,6 +94,14 @@ int run(const Options& options) {
   require_distinct_files(options, tags);
   const auto threshold =
       options.fail_on == "warning" ? validation::FindingSeverity::warning : validation::FindingSeverity::error;
+  if (!options.certificate.empty() && tags.empty())
+    throw Error(ErrorCode::usage,
+                "--certificate compares every check of the run, so it needs the tags.json of the mesh: give --tags");
+  validation::CheckOptions check{.num_threads = options.threads};
+  if (!options.limits.empty()) check.limits = validation::read_limits(options.limits);
+  if (!options.profile.empty()) check.profile = profile_named(options.profile);
+  std::optional<validation::Certificate> certificate;
+  if (!options.certificate.empty()) certificate = validation::read_certificate(options.certificate);
   validation::Expectation expectation;
   if (!tags.empty()) expectation = validation::read_expectation(tags);
   const Progress progress = terminal_progress(options.quiet);
@@ -88,7 +109,6 @@ int run(const Options& options) {
   const mesh::MeshData mesh = formats::read_mesh(options.mesh, options.format, progress);
   progress.at("check", 0.5);
   validation::Expectation netlist;
-  validation::CheckOptions check{.num_threads = options.threads};
   if (!options.netlist.empty()) {
     if (tags.empty())
       throw Error(ErrorCode::usage, "--netlist compares nets, so it needs the tags.json of the mesh: give --tags");
@@ -101,6 +121,7 @@ int run(const Options& options) {
     pipeline::name_features(formats::read_board(options.board, "", progress).board, tags.empty() ? 1.0 : expectation.unit_m,
                             report);
   }
+  if (certificate) validation::check_certificate(*certificate, options.mesh, tags, expectation.unit_m, report);
   clear_progress();
   write_reports(options, report, mesh, threshold);
   if (options.json) {
@@ -130,10 +151,14 @@ Command add_check_command(CLI::App& program) {
   command->add_flag("--json", options->json, "Print the report as JSON");
   command->add_option("--fail-on", options->fail_on, "Exit code 1 from this severity on: error (default) or warning")
       ->check(CLI::IsMember({"warning", "error"}));
+  command->add_option("--profile", options->profile, "Rules of one solver too: palace, mfem, getdp, elmer, dolfinx");
+  command->add_option("--limits", options->limits, "Bounds on the shape of cells (docs/schema/check-limits.schema.json)");
+  command->add_option("--certificate", options->certificate, "Compare with the certificate written beside a mesh");
   command->add_option("--junit", options->junit, "Write a JUnit XML report for CI systems");
   command->add_option("--sarif", options->sarif, "Write a SARIF 2.1.0 report");
   command->add_option("--html", options->html, "Write a one-page HTML summary");
-  command->add_option("--offenders", options->offenders, "Write the first offending cells and faces of each finding as VTU");
+  command->add_option("--offenders", options->offenders,
+                      "Write all offending cells, faces and nodes as VTU (at most 100,000 per finding)");
   command->add_flag("--list", options->list, "List every check code and end");
   command->add_option("--explain", options->explain, "Explain one check code and end");
   command->add_flag("--quiet", options->quiet, "No progress line");
@@ -141,6 +166,8 @@ Command add_check_command(CLI::App& program) {
   command->footer(
       "Examples:\n  pcbmesh check board.msh\n  pcbmesh check board.msh --json | jq .findings\n"
       "  pcbmesh check board.msh --fail-on warning --junit report.xml\n"
+      "  pcbmesh check mesh.msh --profile palace --junit report.xml\n"
+      "  pcbmesh check board.msh --certificate board.certificate.json\n"
       "  pcbmesh check --explain node.hanging");
   return {command, [options] { return run(*options); }};
 }

@@ -54,7 +54,8 @@ pipeline::OutputOptions output_options(const Options& options, LengthUnit unit) 
   write.num_parts = options.num_parts;
   write.index_bits = options.index_bits;
   write.num_threads = options.threads;
-  return {{options.outputs.begin(), options.outputs.end()}, options.to, write, !options.no_check, options.threads};
+  return {
+      {options.outputs.begin(), options.outputs.end()}, options.to, write, !options.no_check, options.threads, options.board};
 }
 
 int run(const Options& options) {
@@ -94,7 +95,7 @@ int run(const Options& options) {
     }
     const std::filesystem::path summary = pipeline::file_beside(output.meshes.front(), ".report.json");
     mesh_run.files = written.files;
-    if (result.resolved.solver != study::Solver::none) {
+    if (writes_deck(result.resolved)) {
       Diagnostics assumed;
       deck = write_solver_deck(result, output.meshes.front(), assumed);
       if (!options.quiet) print_diagnostics(assumed);
@@ -178,8 +179,9 @@ Command add_mesh_command(CLI::App& program) {
       ->group(output);
   options->study = add_study_options(*command);
   command->footer(
-      "Beside board.msh appear board.tags.json (what each tag means), board.resolved.json (every choice, filled in) and\n"
-      "board.report.json (counts, quality, times, moves, verdict).\n\n"
+      "Beside board.msh appear board.tags.json (what each tag means), board.resolved.json (every choice, filled in),\n"
+      "board.report.json (counts, quality, times, moves, verdict) and board.certificate.json (hashes, checks, volumes;\n"
+      "'pcbmesh check --certificate' compares).\n\n"
       "Examples:\n"
       "  pcbmesh mesh board.kicad_pcb -o board.msh\n"
       "  pcbmesh mesh board.kicad_pcb --nets /USB_P,/USB_N --frequency 10GHz -o usb.msh -o usb.vtu\n"

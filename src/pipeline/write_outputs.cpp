@@ -10,13 +10,14 @@
 #include "pcbmesh/base/error.hpp"
 #include "pcbmesh/layering/prism_quality.hpp"
 #include "pcbmesh/mesh/prism_source.hpp"
+#include "pcbmesh/validation/certificate.hpp"
 
 namespace pcbmesh::pipeline {
 namespace {
 
-validation::Report judge(const MeshBoardResult& result, const OutputOptions& options, const std::filesystem::path& tags,
+/// @param expectation  of tags.json; its unit becomes that of the mesh that was judged.
+validation::Report judge(const MeshBoardResult& result, const OutputOptions& options, validation::Expectation& expectation,
                          const Progress& progress) {
-  validation::Expectation expectation = validation::read_expectation(tags.string());
   for (const std::filesystem::path& file : options.meshes) {
     if (formats::find_mesh_format(file, options.format)->read == nullptr) continue;
     progress.at("check", 0);
@@ -81,14 +82,24 @@ OutputResult write_outputs(const MeshBoardResult& result, const OutputOptions& o
   const auto num_volumes = static_cast<std::int32_t>(result.mesh.volume_tags().size());
   formats::tags_json::write_tags(result.mesh, tags, options.write.unit, options.write.one_number_space ? num_volumes : 0);
   write_text_file(study, study::to_json(result.resolved));
-  mesh::PrismSource source(result.mesh, layering::prism_quality);
   for (const std::filesystem::path& file : options.meshes) {
     formats::write_mesh(source, file, options.write, options.format, progress);
     out.files.push_back(file.string());
   }
   out.files.push_back(tags.string());
   out.files.push_back(study.string());
-  if (options.check) out.report = judge(result, options, tags, progress);
+  if (!options.check) return out;
+  validation::Expectation expectation = validation::read_expectation(tags.string());
+  out.report = judge(result, options, expectation, progress);
+  std::vector<validation::Certificate::File> certified;
+  if (!options.board.empty()) certified.push_back(validation::certified_file("board", options.board));
+  certified.push_back(validation::certified_file("study", study));
+  certified.push_back(validation::certified_file("tags", tags));
+  for (const std::filesystem::path& file : options.meshes) certified.push_back(validation::certified_file("mesh", file));
+  const std::filesystem::path certificate = file_beside(options.meshes.front(), ".certificate.json");
+  write_text_file(certificate,
+                  to_json(validation::certify(*out.report, expectation, expectation.unit_m, std::move(certified))));
+  out.files.push_back(certificate.string());
   return out;
 }
 

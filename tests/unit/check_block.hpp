@@ -57,6 +57,7 @@ class BlockBuilder {
     place_nodes();
     add_cells_and_faces();
     describe_nets();
+    describe_layers();
     return finish();
   }
 
@@ -223,6 +224,33 @@ class BlockBuilder {
     }
     for (const auto& [name, count] : pieces) out_.expectation.nets.push_back({name, count});
     out_.expectation.touching_nets.assign(touching.begin(), touching.end());
+  }
+
+  /// Heights of each layer, one entry per run of neighbouring layers of the plan, and the levels that carry nodes.
+  void describe_layers() {
+    std::map<std::string, std::set<int>> found;
+    std::set<int> levels;
+    std::vector<double> z{0};
+    for (int k = 0; k < plan_.num_layers(); ++k) {
+      z.push_back(z.back() + plan_.heights[static_cast<std::size_t>(k)]);
+      for (int i = 0; i < plan_.nx * plan_.ny; ++i) {
+        const int label = plan_.labels[static_cast<std::size_t>(k * plan_.nx * plan_.ny + i)];
+        if (label == empty_label) continue;
+        found[plan_.groups[static_cast<std::size_t>(label)].layer].insert(k);
+        levels.insert({k, k + 1});
+      }
+    }
+    for (const auto& [name, layers] : found) {
+      for (const int k : layers) {
+        auto& list = out_.expectation.layers;
+        if (layers.contains(k - 1)) {
+          list.back().z_max_m = z[static_cast<std::size_t>(k) + 1];
+        } else {
+          list.push_back({name, z[static_cast<std::size_t>(k)], z[static_cast<std::size_t>(k) + 1]});
+        }
+      }
+    }
+    for (const int k : levels) out_.expectation.levels_m.push_back(z[static_cast<std::size_t>(k)]);
   }
 
   CheckCase finish() {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "validation/checks/cell_shapes.hpp"
+#include "validation/checks/cell_geometry.hpp"
 #include "validation/checks/checks.hpp"
 #include "validation/checks/parallel.hpp"
 
@@ -65,25 +65,12 @@ Shape judge_corners(const std::array<Vector3, 8>& at) {
   return flat > 0 ? Shape::flat : Shape::fine;
 }
 
-/// Volume as a sum over the faces, seen from the first corner to keep it exact for small cells far from the origin.
-template <mesh::CellKind kind>
-double volume_of(const std::array<Vector3, 8>& at) {
-  double six_volumes = 0;
-  for (const LocalFace& face : faces_of<kind>()) {
-    const auto point = [&](std::size_t i) { return at[static_cast<std::size_t>(face.corners[i])] - at[0]; };
-    six_volumes += face.num_corners == 3 ? flux(point(0), point(1), point(2)) : flux(point(0), point(1), point(2), point(3));
-  }
-  return six_volumes / 6;
-}
-
 template <mesh::CellKind kind>
 void judge_slice(const Context& context, const mesh::CellBlock& block, std::int64_t first_id, std::int64_t begin,
                  std::int64_t end, CellTallies& tallies, SliceSums& sums, std::vector<std::int32_t>& place_of_slot) {
-  constexpr auto n = static_cast<std::size_t>(mesh::corners_of(kind));
-  std::array<Vector3, 8> at{};
   for (std::int64_t i = begin; i < end; ++i) {
     const auto index = static_cast<std::size_t>(i);
-    for (std::size_t k = 0; k < n; ++k) at[k] = context.mesh.nodes[static_cast<std::size_t>(block.corners[index * n + k])];
+    const std::array<Vector3, 8> at = points_of<kind>(context, block, index);
     switch (judge_corners<kind>(at)) {
       case Shape::fine:
         break;
@@ -144,6 +131,7 @@ VolumeSums check_cells(const Context& context, Report& report) {
     total.add(result.of_tag[slot]);
   }
   result.total = total.value();
+  result.all_positive = all.inverted.count() + all.folded.count() + all.flat.count() == 0;
   log.examined(context.num_cells());
   log.found("cell.inverted", FindingSeverity::error,
             fmt::format("{} cells are inside out: the Jacobian is negative at every corner", all.inverted.count()),

@@ -7,6 +7,7 @@
 #include "pcbmesh/validation/report.hpp"
 #include "validation/checks/context.hpp"
 #include "validation/checks/face_matching.hpp"
+#include "validation/checks/height_growth.hpp"
 #include "validation/checks/net_contacts.hpp"
 
 namespace pcbmesh::validation::checks {
@@ -22,16 +23,25 @@ struct VolumeSums {
   std::vector<double> of_tag;  ///< by slot of Context::cell_tags
   std::vector<std::int64_t> cells_of_tag;
   double total = 0;
+  bool all_positive = true;  ///< no cell is inverted, folded or flat
 };
 
 [[nodiscard]] ArrayState check_arrays(const Context& context, Report& report);
 void check_nodes(const Context& context, Report& report);
 [[nodiscard]] VolumeSums check_cells(const Context& context, Report& report);
-/// Matches all faces; boundary faces are left in the result. `nets` may be null.
-[[nodiscard]] FaceMatch check_faces(const Context& context, NetContacts* nets, Report& report);
+/// Bent quadrangles always, the other limits where they are set. REQUIRES geometry.
+void check_limits(const Context& context, const HeightGrowth& growth, Report& report);
+/// Matches all faces; boundary faces are left in the result. `nets` and `growth` may be null.
+[[nodiscard]] FaceMatch check_faces(const Context& context, NetContacts* nets, HeightGrowth* growth, Report& report);
 void check_boundary_edges(const Context& context, const FaceMatch& match, Report& report);
 void check_boundary_overlaps(const Context& context, const FaceMatch& match, Report& report);
+/// REQUIRES geometry. Does nothing unless all cells are positive and all faces match: it relies on both.
+void check_interiors(const Context& context, const FaceMatch& match, const VolumeSums& sums, Report& report);
 void check_volumes(const Context& context, const FaceMatch& match, const VolumeSums& sums, Report& report);
+/// Cells inside their layers, nodes on levels. Does nothing without layers or levels in tags.json. REQUIRES geometry.
+void check_layers(const Context& context, Report& report);
+/// Partner faces of periodic groups. Does nothing without `periodic` in tags.json. REQUIRES geometry.
+void check_periodic(const Context& context, Report& report);
 void check_tags(const Context& context, const std::vector<std::int64_t>& cells_of_tag, Report& report);
 void check_face_groups(const Context& context, Report& report);
 /// Mesh against layout: pieces, shorts, and what each net is (Report::nets). `netlist` null: the expectation's own.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <ctime>
 
+#include "pcbmesh/validation/codes.hpp"
 #include "validation/checks/cell_shapes.hpp"
 
 namespace pcbmesh::validation::checks {
@@ -25,6 +26,11 @@ std::vector<std::int64_t> first_of_blocks(const std::vector<Block>& blocks) {
 std::pair<std::size_t, std::int64_t> locate(const std::vector<std::int64_t>& first, std::int64_t index) {
   const auto block = static_cast<std::size_t>(std::upper_bound(first.begin(), first.end(), index) - first.begin()) - 1;
   return {block, index - first[block]};
+}
+
+FindingSeverity severity_of(std::string_view code) {
+  const CheckCode* entry = find_check_code(code);
+  return entry == nullptr ? FindingSeverity::error : entry->severity;
 }
 
 double cpu_seconds() {
@@ -71,6 +77,8 @@ int TagTable::slot_of_wild(std::int32_t tag) const {
 Context::Context(const mesh::MeshData& mesh_data, const Expectation* expected, const CheckOptions& options)
     : mesh(mesh_data),
       expectation(expected),
+      limits(options.limits),
+      profile(options.profile),
       num_threads(std::clamp(options.num_threads, 1, 256)),
       first_cell(first_of_blocks(mesh_data.cells)),
       first_face(first_of_blocks(mesh_data.faces)),
@@ -205,39 +213,59 @@ CheckLog::~CheckLog() {
 
 void CheckLog::found(std::string_view code, FindingSeverity severity, std::string text, const Tally& tally, PlaceKind kind) {
   if (tally.count() == 0) return;
-  std::vector<Finding::Place> places;
-  for (const std::int64_t id : tally.kept()) {
+  Finding finding{std::string(code), severity, std::move(text), tally.count(), {}};
+  for (const std::int64_t id : tally.kept(Finding::max_places)) {
     switch (kind) {
       case PlaceKind::cell:
-        places.push_back(context_.place_of_cell(id));
+        finding.places.push_back(context_.place_of_cell(id));
         break;
       case PlaceKind::face:
-        places.push_back(context_.place_of_face(id));
+        finding.places.push_back(context_.place_of_face(id));
         break;
       case PlaceKind::half_face:
-        places.push_back(context_.place_of_half_face(id));
+        finding.places.push_back(context_.place_of_half_face(id));
         break;
       case PlaceKind::node:
-        places.push_back(context_.place_of_node(id));
+        finding.places.push_back(context_.place_of_node(id));
         break;
       case PlaceKind::none:
         break;
     }
   }
-  found(code, severity, std::move(text), tally.count(), std::move(places));
+  std::vector<std::int64_t> ids = tally.kept();
+  if (kind == PlaceKind::half_face) {
+    for (std::int64_t& id : ids) id >>= 3;
+    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  }
+  if (kind == PlaceKind::cell || kind == PlaceKind::half_face) finding.cells = std::move(ids);
+  if (kind == PlaceKind::face) finding.faces = std::move(ids);
+  if (kind == PlaceKind::node) finding.nodes = std::move(ids);
+  give(std::move(finding));
 }
 
 void CheckLog::found(std::string_view code, FindingSeverity severity, std::string text, std::int64_t count,
                      std::vector<Finding::Place> places) {
-  run_.num_found += count;
-  Given& given = given_.try_emplace(std::string(code)).first->second;
-  given.severity = severity;
+  give({std::string(code), severity, std::move(text), count, std::move(places)});
+}
+
+void CheckLog::found(std::string_view code, std::string text, const Tally& tally, PlaceKind kind) {
+  found(code, severity_of(code), std::move(text), tally, kind);
+}
+
+void CheckLog::found(std::string_view code, std::string text, std::int64_t count, std::vector<Finding::Place> places) {
+  found(code, severity_of(code), std::move(text), count, std::move(places));
+}
+
+void CheckLog::give(Finding finding) {
+  run_.num_found += finding.count;
+  Given& given = given_.try_emplace(finding.code).first->second;
+  given.severity = finding.severity;
   is_last_kept_ = ++given.findings <= max_findings_of_a_code;
   if (!is_last_kept_) {
-    given.count_beyond += count;
+    given.count_beyond += finding.count;
     return;
   }
-  report_.findings.push_back({std::string(code), severity, std::move(text), count, std::move(places)});
+  report_.findings.push_back(std::move(finding));
 }
 
 void CheckLog::describe_last(std::vector<std::string> nets, std::string layer) {

@@ -49,6 +49,8 @@ struct Context {
 
   const mesh::MeshData& mesh;
   const Expectation* expectation;
+  const Limits& limits;
+  const Profile* profile;
   int num_threads;
   std::vector<std::int64_t> first_cell, first_face;  ///< per block, plus one
   TagTable cell_tags, face_tags;
@@ -72,6 +74,8 @@ struct Context {
   /// Corners of a half face, counter-clockwise seen from outside; returns how many.
   int corners_of_half_face(std::int64_t half_face, std::array<std::int64_t, 4>& corners) const;
 
+  /// Metres per unit of the mesh: by tags.json, else by the limits file, else 1.
+  [[nodiscard]] double unit_m() const { return expectation != nullptr ? expectation->unit_m : limits.unit_m.value_or(1.0); }
   /// Name of a group: the mesh's own, else the expectation's, else empty.
   [[nodiscard]] std::string name_of(int dimension, std::int32_t tag) const;
   [[nodiscard]] Finding::Place place_of_cell(std::int64_t cell) const;
@@ -100,10 +104,14 @@ class CheckLog {
   void found(std::string_view code, FindingSeverity severity, std::string text, const Tally& tally, PlaceKind kind);
   void found(std::string_view code, FindingSeverity severity, std::string text, std::int64_t count = 1,
              std::vector<Finding::Place> places = {});
+  /// With the severity of the table of codes.
+  void found(std::string_view code, std::string text, const Tally& tally, PlaceKind kind);
+  void found(std::string_view code, std::string text, std::int64_t count = 1, std::vector<Finding::Place> places = {});
   /// Says which nets and which layer the finding just made is about.
   void describe_last(std::vector<std::string> nets, std::string layer);
 
  private:
+  void give(Finding finding);
   bool is_last_kept_ = false;
   Report& report_;
   const Context& context_;

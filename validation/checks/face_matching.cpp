@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "validation/checks/cell_shapes.hpp"
+#include "validation/checks/height_growth.hpp"
 #include "validation/checks/net_contacts.hpp"
 #include "validation/checks/parallel.hpp"
 
@@ -82,7 +83,7 @@ void scan_faces(const mesh::FaceBlock& block, std::int64_t first_id, std::int64_
 template <class Index>
 class Matcher {
  public:
-  Matcher(const Context& context, NetContacts* nets) : context_(context), nets_(nets) {
+  Matcher(const Context& context, NetContacts* nets, HeightGrowth* growth) : context_(context), nets_(nets), growth_(growth) {
     const auto num_slots = static_cast<std::size_t>(context.face_tags.size());
     is_outer_slot_.assign(num_slots, 0);
     if (context.expectation != nullptr) {
@@ -207,6 +208,7 @@ class Matcher {
     } else if (owners == 2 && !group[0].is_same_side(group[1])) {
       ++result.num_inner;
       if (nets_ != nullptr) nets_->meet(worker, id_of(group[0]) >> 3, id_of(group[1]) >> 3, id_of(group[0]));
+      if (growth_ != nullptr) growth_->meet(worker, id_of(group[0]), id_of(group[1]));
     } else if (owners >= 2) {
       (owners == 2 ? result.same_orientation : result.many_owners).add(id_of(group[0]));
       find_duplicates(group.first(owners), result);
@@ -276,6 +278,7 @@ class Matcher {
   };
   const Context& context_;
   NetContacts* nets_;
+  HeightGrowth* growth_;
   int shift_ = 12;
   std::vector<std::uint8_t> is_outer_slot_;
   std::vector<FaceMatch> of_worker_;
@@ -304,12 +307,12 @@ void FaceMatch::merge(const FaceMatch& other) {
   }
 }
 
-FaceMatch match_faces(const Context& context, NetContacts* nets, const MatchOptions& options) {
+FaceMatch match_faces(const Context& context, NetContacts* nets, HeightGrowth* growth, const MatchOptions& options) {
   // 32-bit entries take half the memory and suffice for half a thousand million cells.
   constexpr std::int64_t max_small = std::numeric_limits<std::uint32_t>::max() - 1;
   const bool small = context.num_nodes() < max_small && context.num_cells() + context.num_faces() < (max_small >> 3);
-  if (small && !options.wide_ids) return Matcher<std::uint32_t>(context, nets).run(options);
-  return Matcher<std::int64_t>(context, nets).run(options);
+  if (small && !options.wide_ids) return Matcher<std::uint32_t>(context, nets, growth).run(options);
+  return Matcher<std::int64_t>(context, nets, growth).run(options);
 }
 
 }  // namespace pcbmesh::validation::checks

@@ -10,6 +10,7 @@
 namespace pcbmesh::validation::checks {
 
 class NetContacts;
+class HeightGrowth;
 
 /// Every face of every cell, brought together with its equals. Half faces are cell << 3 | local face.
 struct FaceMatch {
@@ -39,8 +40,9 @@ struct MatchOptions {
   bool wide_ids = false;                       ///< 64-bit entries even where 32 bits would do
 };
 
-/// @param nets  told of every pair of cells that share a face; may be null.
+/// @param nets, growth  told of every pair of cells that share a face; may be null.
 /// REQUIRES every corner to be a node. @cost about 45 bytes per cell, 0.15 us per cell.
-[[nodiscard]] FaceMatch match_faces(const Context& context, NetContacts* nets, const MatchOptions& options = {});
+[[nodiscard]] FaceMatch match_faces(const Context& context, NetContacts* nets, HeightGrowth* growth = nullptr,
+                                    const MatchOptions& options = {});
 
 }  // namespace pcbmesh::validation::checks

@@ -67,9 +67,9 @@ void report_mixed_tags(const Context& context, const FaceMatch& match, CheckLog&
 
 }  // namespace
 
-FaceMatch check_faces(const Context& context, NetContacts* nets, Report& report) {
+FaceMatch check_faces(const Context& context, NetContacts* nets, HeightGrowth* growth, Report& report) {
   CheckLog log(report, context, "faces");
-  FaceMatch match = match_faces(context, nets);
+  FaceMatch match = match_faces(context, nets, growth);
   log.examined(match.num_inner + static_cast<std::int64_t>(match.boundary.size()) + match.many_owners.count() +
                match.same_orientation.count());
   report_owners(match, log);

@@ -112,7 +112,7 @@ void NetPieces::meet(std::int32_t a, std::int32_t b, std::int64_t face) {
 void NetPieces::take_cell_contacts(const NetContacts& cells) {
   for (const auto& [pair, tally] : cells.touches()) {
     const std::int32_t a = net_of_cell_net_[ix(pair.first)], b = net_of_cell_net_[ix(pair.second)];
-    contacts_[{std::min(a, b), std::max(a, b)}] = {tally.count(), context_.place_of_half_face(tally.kept().front())};
+    contacts_[{std::min(a, b), std::max(a, b)}] = {tally.count(), context_.place_of_half_face(tally.kept(1).front())};
   }
 }
 

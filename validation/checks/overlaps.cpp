@@ -103,6 +103,38 @@ bool overlap(const Patch& f, const Patch& g, double tolerance) {
   return !is_separated(f, g, tolerance) && !is_separated(g, f, tolerance);
 }
 
+bool is_inside(const Patch& patch, const Vector3& at, double tolerance) {
+  for (std::size_t i = 0; i < patch.n; ++i) {
+    if (!(beyond_edge(patch, i, at) < -tolerance)) return false;
+  }
+  return true;
+}
+
+/// Some edge of `f` that meets `g` at no corner goes through the inside of `g`, deeper than the tolerance on both sides.
+/// The flat polygon with g's normal stands for a quadrangle; a bent one is left alone, its bend is no crossing.
+bool cuts_through(const Patch& f, const Patch& g, double tolerance) {
+  if (g.area == 0) return false;
+  std::array<double, 4> height{};
+  bool above = false, below = false;
+  for (std::size_t i = 0; i < f.n; ++i) {
+    height[i] = dot(f.at[i] - g.at[0], g.normal);
+    above = above || height[i] > tolerance;
+    below = below || height[i] < -tolerance;
+  }
+  if (!above || !below) return false;
+  if (g.n == 4 && std::abs(dot(g.at[2] - g.at[0], g.normal)) > 0.5 * tolerance) return false;
+  for (std::size_t i = 0; i < f.n; ++i) {
+    const std::size_t k = i + 1 == f.n ? 0 : i + 1;
+    if (std::min(height[i], height[k]) >= -tolerance || std::max(height[i], height[k]) <= tolerance) continue;
+    if (g.has(f.ids[i]) || g.has(f.ids[k])) continue;
+    const double part = height[i] / (height[i] - height[k]);
+    Vector3 at = f.at[i];
+    for (std::size_t axis = 0; axis < 3; ++axis) at[axis] += part * (f.at[k][axis] - f.at[i][axis]);
+    if (is_inside(g, at, tolerance)) return true;
+  }
+  return false;
+}
+
 bool all_points_on(const Patch& patch, const Patch& other, double tolerance) {
   for (std::size_t i = 0; i < patch.n; ++i) {
     if (!other.has(patch.ids[i]) && !has_point(other, patch.at[i], tolerance)) return false;
@@ -111,7 +143,7 @@ bool all_points_on(const Patch& patch, const Patch& other, double tolerance) {
 }
 
 struct OverlapTallies {
-  Tally crack, quad_on_triangles, other, not_searched;
+  Tally crack, quad_on_triangles, other, crossing, not_searched;
   std::vector<std::int64_t> hanging;
 };
 
@@ -129,7 +161,10 @@ void judge_pair(const Context& context, std::int64_t id, const Patch& f, const B
   for (std::size_t i = 0; i < g.n; ++i) {
     if (!f.has(g.ids[i]) && contains(box_f, g.at[i]) && hangs_on(f, g.at[i], tolerance)) tallies.hanging.push_back(g.ids[i]);
   }
-  if (!overlap(f, g, tolerance)) return;
+  if (!overlap(f, g, tolerance)) {
+    if (cuts_through(f, g, tolerance) || cuts_through(g, f, tolerance)) tallies.crossing.add(id);
+    return;
+  }
   if (f.n == g.n && all_points_on(f, g, tolerance)) {
     tallies.crack.add(id);
   } else if (f.n != g.n && all_points_on(f.n == 3 ? f : g, f.n == 3 ? g : f, tolerance)) {
@@ -208,6 +243,10 @@ void report_overlaps(OverlapTallies& all, std::int64_t num_faces, CheckLog& log)
   log.found("boundary.overlap", FindingSeverity::error,
             fmt::format("{} pairs of boundary faces overlap: neighbours do not share whole faces", all.other.count()),
             all.other, PlaceKind::half_face);
+  log.found(
+      "boundary.crossing",
+      fmt::format("{} pairs of boundary faces cut through each other: the cells behind them overlap", all.crossing.count()),
+      all.crossing, PlaceKind::half_face);
   log.found("boundary.not_searched", FindingSeverity::warning,
             fmt::format("{} of {} boundary faces were not compared with others: too many lie on top of each other",
                         all.not_searched.count(), num_faces),
@@ -247,6 +286,7 @@ void check_boundary_overlaps(const Context& context, const FaceMatch& match, Rep
     all.crack.merge(mine.crack);
     all.quad_on_triangles.merge(mine.quad_on_triangles);
     all.other.merge(mine.other);
+    all.crossing.merge(mine.crossing);
     all.not_searched.merge(mine.not_searched);
     all.hanging.insert(all.hanging.end(), mine.hanging.begin(), mine.hanging.end());
   }

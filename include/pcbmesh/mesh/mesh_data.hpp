@@ -41,6 +41,13 @@ struct GroupName {
   std::string name;
 };
 
+/// The file a mesh was read from, as far as it matters to other programs that read it.
+struct FileFormat {
+  std::string name;        ///< as in the table of formats, e.g. "msh"; empty = not from a file
+  std::string version;     ///< e.g. "2.2"; empty = the format has none
+  bool is_binary = false;  ///< else text
+};
+
 /// An explicit mesh read from any file, for check and convert. Coordinates as written (see unit_m).
 struct MeshData {
   std::string source;  ///< file
@@ -49,6 +56,8 @@ struct MeshData {
   std::vector<FaceBlock> faces;  ///< tagged faces only
   std::vector<GroupName> names;
   std::vector<std::int64_t> num_other_elements;  ///< points [0] and lines [1] met and ignored
+  FileFormat format;
+  std::array<std::int64_t, 3> num_untagged{};  ///< points, lines and faces of the file that belong to no group
 };
 
 }  // namespace pcbmesh::mesh

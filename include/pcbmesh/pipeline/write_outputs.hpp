@@ -20,6 +20,7 @@ struct OutputOptions {
   formats::WriteMeshOptions write;
   bool check = true;  ///< judge the mesh
   int num_threads = 1;
+  std::filesystem::path board{};  ///< for the certificate; empty = not certified
 };
 
 struct OutputResult {
@@ -35,7 +36,8 @@ struct OutputResult {
 void require_writable(const OutputOptions& options, const std::filesystem::path& input);
 
 /// Writes x.tags.json (what each tag means), x.resolved.json (the resolved study), then the meshes, then judges.
-/// The verdict is on the first mesh file that can be read back, else on the mesh expanded in memory.
+/// The verdict is on the first mesh file that can be read back, else on the mesh expanded in memory; with it comes
+/// x.certificate.json (hashes of all files, counts of all checks, volumes beside their analytic values).
 /// Every file appears whole or not at all. @throws Error write_failed (701), format_limit (703), cancelled (103).
 [[nodiscard]] OutputResult write_outputs(const MeshBoardResult& result, const OutputOptions& options,
                                          const Progress& progress = Progress{});

@@ -23,9 +23,9 @@ namespace pcbmesh::validation {
 /// One self-contained page: verdict, findings with remedies and first places, checks, volumes. Loads nothing.
 [[nodiscard]] std::string to_html(const Report& report, std::string_view mesh_file);
 
-/// VTU (ASCII) of the cells and tagged faces that the findings name as places: at most eight per finding, as in the report.
-/// Cell data: "finding" (index into Report::findings), "tag", "is_face". Places naming a node only become vertices.
-/// REQUIRES `report` to be of `mesh`; places that do not fit it (ids out of range) are left out.
+/// VTU (ASCII) of every offending cell, tagged face and node: all of a finding, up to Finding::max_offenders of them.
+/// Cell data: "finding" (index into Report::findings), "tag", "is_face". Nodes become vertices.
+/// REQUIRES `report` to be of `mesh`; elements that do not fit it (ids out of range) are left out.
 [[nodiscard]] std::string to_offenders_vtu(const Report& report, const mesh::MeshData& mesh);
 
 }  // namespace pcbmesh::validation

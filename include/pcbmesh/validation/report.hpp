@@ -8,10 +8,11 @@
 #include <vector>
 
 #include "pcbmesh/mesh/mesh_data.hpp"
+#include "pcbmesh/validation/limits.hpp"
 
 namespace pcbmesh::validation {
 
-enum class FindingSeverity { warning, error };
+struct Profile;
 
 /// All findings of one kind: counted in full, with the first few places. Codes are listed in docs/checks.md. A code may
 /// come more than once with different texts (e.g. "net.short", once for each pair of nets).
@@ -27,7 +28,11 @@ struct Finding {
     std::int64_t face = -1;      ///< index over all tagged face blocks in order, -1 = none
     std::int64_t node = -1;      ///< node index, -1 = none
   };
-  std::vector<Place> places;        ///< at most 8
+  std::vector<Place> places;  ///< the first max_places
+  static constexpr std::size_t max_places = 8, max_offenders = 100'000;
+  /// All that were found, the smallest indices up to max_offenders, ascending. Empty where a finding has no such elements
+  /// or only its places are known.
+  std::vector<std::int64_t> cells{}, faces{}, nodes{};
   std::vector<std::string> nets{};  ///< findings about nets: which
   std::string layer{};              ///< findings about nets: where the fault is, may be empty
 };
@@ -83,16 +88,30 @@ struct Expectation {
     bool outer = true;
     std::int64_t num_faces = -1;
     double area_m2 = -1;
+    std::string kind{};  ///< outer, conductor, sheet, port, wave_port or interface; empty = not said
   };
   struct Net {
     std::string name;
     std::int32_t pieces = -1;  ///< connected pieces of solid copper by the layout; < 0 = unknown
+  };
+  /// What lies between two heights; a name may come more than once.
+  struct Layer {
+    std::string name;
+    double z_min_m = 0, z_max_m = 0;
+  };
+  /// The faces of group `b` are those of group `a`, shifted.
+  struct Periodic {
+    std::string a, b;                              ///< names of face groups
+    std::optional<std::array<double, 3>> shift_m;  ///< from a to b; nullopt = as the corners of their boxes lie
   };
   double unit_m = 1.0;  ///< metres per unit of the file
   std::vector<Volume> volumes;
   std::vector<Face> faces;
   std::vector<Net> nets;
   std::vector<std::array<std::string, 2>> touching_nets;  ///< allowed contacts
+  std::vector<Layer> layers;                              ///< empty = not known
+  std::vector<double> levels_m;                           ///< heights of the levels of nodes, ascending; empty = not known
+  std::vector<Periodic> periodic;
 };
 
 /// Reads the contract tags.json. @throws Error file_unreadable (201), file_syntax (202).
@@ -100,6 +119,8 @@ struct Expectation {
 
 struct CheckOptions {
   int num_threads = 1;
+  Limits limits{};                   ///< none by default
+  const Profile* profile = nullptr;  ///< rules of one solver; null = none
   /// Judges connections by the nets and contacts of this one instead: the tags.json of another mesh of the same layout.
   const Expectation* netlist = nullptr;
 };

@@ -1,0 +1,153 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The reports of pcbmesh check as their readers see them: JUnit, SARIF, HTML in a browser, offenders in a mesh library; the certificate."""
+import html.parser
+import json
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+import urllib.parse
+import xml.etree.ElementTree
+
+from program import ROOT, SKIPPED, run
+
+try:
+    import jsonschema
+    import meshio
+    import numpy
+except ImportError as missing:
+    print(f"skipped: {missing}")
+    sys.exit(SKIPPED)
+
+
+class Text(html.parser.HTMLParser):
+    """Visible text, and whether every tag is closed in order."""
+    VOID = {"meta", "br"}
+
+    def __init__(self):
+        super().__init__()
+        self.open, self.words, self.faults, self.links = [], [], [], []
+
+    def handle_starttag(self, tag, attributes):
+        if tag not in self.VOID:
+            self.open.append(tag)
+        self.links += [value for key, value in attributes if key in ("src", "href")]
+
+    def handle_endtag(self, tag):
+        if not self.open or self.open.pop() != tag:
+            self.faults.append(tag)
+
+    def handle_data(self, data):
+        self.words.append(data)
+
+
+class Reports(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.out = pathlib.Path(cls.folder.name)
+        cls.made = run("mesh", ROOT / "examples/microstrip.json", "-o", cls.out / "good.msh", "--msh-version", "2.2", "--ascii", "--quiet")
+        # Twenty cells turned inside out: the corners of their bases go round the other way.
+        text = (cls.out / "good.msh").read_text().splitlines()
+        wedges = [i for i, line in enumerate(text) if re.match(r"\d+ 6 2 ", line)]
+        for i in wedges[100:120]:
+            w = text[i].split()
+            w[6], w[7], w[9], w[10] = w[7], w[6], w[10], w[9]
+            text[i] = " ".join(w)
+        cls.bad = cls.out / "a bad <mesh>.msh"
+        cls.bad.write_text("\n".join(text) + "\n")
+        names = {name: cls.out / f"report.{name}" for name in ("junit", "sarif", "html", "vtu")}
+        cls.done = run("check", cls.bad, "--tags", cls.out / "good.tags.json", "--junit", names["junit"], "--sarif", names["sarif"], "--html",
+                       names["html"], "--offenders", names["vtu"], "--json", "--quiet")
+        cls.names, cls.report = names, json.loads(cls.done.stdout)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def test_the_report_obeys_its_schema(self):
+        jsonschema.validate(self.report, json.loads((ROOT / "docs/schema/check-report.schema.json").read_text()))
+        self.assertEqual(self.done.returncode, 1)
+        inverted = next(f for f in self.report["findings"] if f["code"] == "cell.inverted")
+        self.assertEqual((inverted["count"], len(inverted["places"])), (20, 8))
+
+    def test_junit_counts_what_it_lists(self):
+        root = xml.etree.ElementTree.parse(self.names["junit"]).getroot()
+        for element in (root, root[0]):
+            cases = list(element.iter("testcase"))
+            self.assertEqual(int(element.get("tests")), len(cases))
+            self.assertEqual(int(element.get("failures")), sum(case.find("failure") is not None for case in cases))
+        self.assertEqual(root[0].get("name"), str(self.bad))
+        failed = {case.get("name") for case in root.iter("testcase") if case.find("failure") is not None}
+        self.assertEqual(failed, {f["code"] for f in self.report["findings"] if f["severity"] == "error"})
+        self.assertEqual(len({case.get("name") for case in root.iter("testcase")}), len(list(root.iter("testcase"))))
+
+    def test_sarif_obeys_the_rules_of_its_standard(self):
+        log = json.loads(self.names["sarif"].read_text())
+        self.assertEqual((log["version"], len(log["runs"])), ("2.1.0", 1))
+        driver = log["runs"][0]["tool"]["driver"]
+        rules = driver["rules"]
+        self.assertTrue(driver["name"] and driver["version"])
+        self.assertEqual(len({rule["id"] for rule in rules}), len(rules))  # 3.19.23: unique
+        for rule in rules:
+            self.assertIn(rule["defaultConfiguration"]["level"], ("none", "note", "warning", "error"))
+            self.assertTrue(rule["shortDescription"]["text"] and rule["help"]["text"])
+        self.assertEqual(len(log["runs"][0]["results"]), len(self.report["findings"]))
+        for result in log["runs"][0]["results"]:
+            self.assertEqual(rules[result["ruleIndex"]]["id"], result["ruleId"])  # 3.27.6
+            self.assertIn(result["level"], ("none", "note", "warning", "error"))
+            self.assertTrue(result["message"]["text"])
+            self.assertGreaterEqual(result["occurrenceCount"], 1)  # 3.27.24
+            for location in result["locations"]:
+                uri = location["physicalLocation"]["artifactLocation"]["uri"]
+                self.assertEqual(urllib.parse.unquote(urllib.parse.urlparse(uri).path), str(self.bad))
+                self.assertNotRegex(uri, r"[<> ]")
+
+    def test_html_is_whole_and_loads_nothing(self):
+        text = Text()
+        text.feed(self.names["html"].read_text())
+        self.assertEqual((text.open, text.faults, text.links), ([], [], []))
+        words = " ".join(text.words)
+        self.assertIn("a bad <mesh>.msh: failed", words)
+        self.assertIn("cell.inverted", words)
+
+    def test_html_in_a_browser(self):
+        browser = shutil.which("chromium")
+        if not browser:
+            self.skipTest("chromium is not installed")
+        with tempfile.TemporaryDirectory() as profile:
+            done = subprocess.run([browser, "--headless", "--no-sandbox", "--disable-gpu", f"--user-data-dir={profile}", "--dump-dom",
+                                   self.names["html"].as_uri()], capture_output=True, text=True, timeout=120)
+        if done.returncode:
+            self.skipTest(f"chromium does not run here: {done.stderr[-200:]}")
+        self.assertIn("a bad &lt;mesh&gt;.msh: failed</h1>", done.stdout)
+        self.assertIn("<h2 class=\"error\">error cell.inverted</h2>", done.stdout)
+
+    def test_offenders_hold_all_of_each_finding(self):
+        grid = meshio.read(self.names["vtu"], file_format="vtu")
+        numbers = numpy.concatenate(grid.cell_data["finding"])
+        for i, finding in enumerate(self.report["findings"]):
+            if finding["code"] == "cell.inverted":
+                self.assertEqual(int((numbers == i).sum()), 20)
+
+    def test_the_certificate_holds_for_its_mesh_alone(self):
+        certificate = self.out / "good.certificate.json"
+        self.assertEqual(self.made.returncode, 0, self.made.stderr)
+        jsonschema.validate(json.loads(certificate.read_text()), json.loads((ROOT / "docs/schema/certificate.schema.json").read_text()))
+        self.assertEqual(run("check", self.out / "good.msh", "--certificate", certificate).returncode, 0)
+        other = run("check", self.bad, "--tags", self.out / "good.tags.json", "--certificate", certificate, "--json")
+        codes = {f["code"] for f in json.loads(other.stdout)["findings"]}
+        self.assertLessEqual({"certificate.file_differs", "certificate.verdict_differs", "certificate.volume_differs"}, codes)
+        again = self.out / "again"
+        again.mkdir()
+        run("mesh", ROOT / "examples/microstrip.json", "-o", again / "good.msh", "--msh-version", "2.2", "--ascii", "--quiet", "--threads", "1")
+        self.assertEqual((again / "good.certificate.json").read_bytes(), certificate.read_bytes(), "another run, other threads, other folder")
+        self.assertEqual(run("check", self.out / "good.msh", "--no-tags", "--certificate", certificate).returncode, 2)
+
+
+if __name__ == "__main__":
+    unittest.main()

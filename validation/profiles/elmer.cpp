@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Elmer through ElmerGrid: reads text only.
+#include <fmt/format.h>
+
+#include "validation/checks/checks.hpp"
+#include "validation/profiles/rules.hpp"
+#include "validation/profiles/solvers.hpp"
+
+namespace pcbmesh::validation::profiles {
+namespace {
+
+void judge(const checks::Context& context, const checks::FaceMatch&, Report& report) {
+  checks::CheckLog log(report, context, "profile elmer");
+  log.examined(context.num_cells() + context.num_faces());
+  const mesh::FileFormat& format = context.mesh.format;
+  if (format.name == "msh" && format.is_binary) {
+    log.found("profile.elmer.format", fmt::format("the file is binary MSH {}; ElmerGrid reads text only", format.version));
+  }
+}
+
+}  // namespace
+
+constinit const Profile elmer{"elmer", "ElmerGrid and Elmer 9", judge};
+
+}  // namespace pcbmesh::validation::profiles
