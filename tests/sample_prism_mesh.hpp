@@ -39,8 +39,8 @@ inline void fill_tag_sizes(mesh::PrismMeshParts& parts) {
   }
 }
 
-/// 6 x 4 squares in 6 regions, 3 slabs of 1, 3 and 2 sub-layers of unequal heights. Region 1 is void in slab 1 (a hollow conductor), region 5 in
-/// slabs 1 and 2 (a step of the outer shape). Volume tag 2 lives in two slabs.
+/// 6 x 4 squares in 6 regions, 3 slabs of 1, 3 and 2 sub-layers of unequal heights. Region 1 is void in slab 1 (a hollow
+/// conductor), region 5 in slabs 1 and 2 (a step of the outer shape). Volume tag 2 lives in two slabs.
 inline mesh::PrismMeshParts sample_parts(bool with_voids = true) {
   mesh::PrismMeshParts parts;
   parts.planar = grid(

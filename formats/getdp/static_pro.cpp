@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "formats/getdp/write_pro.hpp"
 #include "pcbmesh/base/error.hpp"
 
@@ -39,7 +41,9 @@ std::string eigenmode_pro(const deck::FieldProblem& problem) {
   // Eigenvalues are k0^2 in squared reciprocal mesh units.
   const double hz_per_root = deck::light_m_per_s / (2 * 3.14159265358979324 * unit_m);
   const double target = problem.options.modes.above_hz / hz_per_root;
-  out += fmt::format("  Hz_Per_Root = {};\n}}\n", number(hz_per_root));
+  // Gradients are static solutions of no interest; they lie at zero but for rounding.
+  out += fmt::format("  Hz_Per_Root = {};\n  Is_Wave[] = Norm[$EigenvalueReal] > {};\n}}\n", number(hz_per_root),
+                     number(1e-3 * std::min(target, target * target)));
   out += edge_space("Vol_Field");
   out += integration();
   out += R"(Formulation {
@@ -52,7 +56,7 @@ std::string eigenmode_pro(const deck::FieldProblem& problem) {
 )";
   out += fmt::format(R"(Resolution {{
   {{ Name Resonances; System {{ {{ Name Sys_E; NameOfFormulation Form_E; Type Complex; }} }}
-    Operation {{ GenerateSeparate[Sys_E]; EigenSolve[Sys_E, {0}, {1}, 0]; SaveSolutions[Sys_E];
+    Operation {{ GenerateSeparate[Sys_E]; EigenSolve[Sys_E, {0}, {1}, 0, Is_Wave[]]; SaveSolutions[Sys_E];
       DeleteFile["{2}"]; PostOperation[Modes]; }} }}
 }}
 PostProcessing {{

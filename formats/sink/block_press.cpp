@@ -15,7 +15,9 @@
 namespace pcbmesh::formats {
 namespace {
 
-constexpr std::size_t blocks_per_thread = 2;
+/// Blocks packed at a time: the same for any number of threads, or two arrays that are written side by side would lie in the
+/// file in another order.
+constexpr std::size_t blocks_at_once = 8;
 
 }  // namespace
 
@@ -23,7 +25,7 @@ BlockPress::BlockPress(int num_threads, Pack pack, Take take)
     : pack_(std::move(pack)),
       take_(std::move(take)),
       num_threads_(static_cast<std::size_t>(std::max(num_threads, 1))),
-      blocks_(num_threads_ * blocks_per_thread) {}
+      blocks_(blocks_at_once) {}
 
 void BlockPress::add(std::span<const char> plain) {
   blocks_[num_waiting_++].plain.assign(plain.begin(), plain.end());

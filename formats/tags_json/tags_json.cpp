@@ -54,30 +54,28 @@ Json volumes(const mesh::PrismMesh& mesh) {
   return out;
 }
 
+/// Every key is always there; null where the kind has no such number.
 Json model_json(const Dispersion& dispersion) {
-  Json model{{"kind", name_of(dispersion.kind)}};
-  if (dispersion.kind == DispersionKind::constant) return model;
-  model["eps_inf"] = dispersion.eps_inf;
-  if (dispersion.kind == DispersionKind::djordjevic_sarkar) {
-    model["slope"] = dispersion.slope;
-    model["low_hz"] = dispersion.low_hz;
-    model["high_hz"] = dispersion.high_hz;
-    return model;
-  }
-  model["poles"] = Json::array();
+  const bool is_wideband = dispersion.kind == DispersionKind::djordjevic_sarkar;
+  const auto of_wideband = [&](double value) { return is_wideband ? Json(value) : Json(nullptr); };
+  Json model{{"kind", name_of(dispersion.kind)},
+             {"eps_inf", dispersion.kind == DispersionKind::constant ? Json(nullptr) : Json(dispersion.eps_inf)},
+             {"slope", of_wideband(dispersion.slope)},
+             {"low_hz", of_wideband(dispersion.low_hz)},
+             {"high_hz", of_wideband(dispersion.high_hz)},
+             {"poles", Json::array()}};
   for (const DebyePole& pole : dispersion.poles)
     model["poles"].push_back({{"delta_eps", pole.delta_eps}, {"relaxation_hz", pole.relaxation_hz}});
   return model;
 }
 
 Json roughness_json(const Roughness& roughness) {
-  Json out{{"kind", name_of(roughness.kind)}};
-  if (roughness.kind == RoughnessKind::hammerstad || roughness.kind == RoughnessKind::groisse) out["rms_m"] = roughness.rms_m;
-  if (roughness.kind == RoughnessKind::huray) {
-    out["nodule_radius_m"] = roughness.nodule_radius_m;
-    out["surface_ratio"] = roughness.surface_ratio;
-  }
-  return out;
+  const bool has_rms = roughness.kind == RoughnessKind::hammerstad || roughness.kind == RoughnessKind::groisse;
+  const bool has_nodules = roughness.kind == RoughnessKind::huray;
+  return {{"kind", name_of(roughness.kind)},
+          {"rms_m", has_rms ? Json(roughness.rms_m) : Json(nullptr)},
+          {"nodule_radius_m", has_nodules ? Json(roughness.nodule_radius_m) : Json(nullptr)},
+          {"surface_ratio", has_nodules ? Json(roughness.surface_ratio) : Json(nullptr)}};
 }
 
 Json materials(const mesh::PrismMesh& mesh) {

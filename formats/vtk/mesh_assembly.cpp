@@ -76,7 +76,7 @@ void MeshAssembly::add_element(ElementKind kind, std::span<const std::int64_t> n
                                std::int32_t tag, std::int64_t first_node) {
   const int place = place_of(kind);
   if (place < 0)
-    throw Error(ErrorCode::format_limit,
+    throw Error(ErrorCode::file_syntax,
                 fmt::format("holds elements of the kind {}; this reader takes the first order alone", mesh::name_of(kind)),
                 {.file = file_.string()}, {num_elements_});
   const bool is_cell = mesh::dimension_of(kind) == 3;

@@ -23,7 +23,7 @@ class MeshAssembly {
   [[nodiscard]] std::int64_t num_nodes() const { return static_cast<std::int64_t>(mesh_.nodes.size()); }
   void reserve(mesh::ElementKind kind, std::int64_t count);
   /// @param nodes  node numbers, `first_node` less than they are; in the file's order. @param order  file[i] = ours[order[i]].
-  /// @throws Error file_syntax (202) for numbers without a node, format_limit (703) for kinds that are not read.
+  /// @throws Error file_syntax (202) for numbers without a node and for kinds that are not read.
   void add_element(mesh::ElementKind kind, std::span<const std::int64_t> nodes, std::span<const std::uint8_t> order,
                    std::int32_t tag, std::int64_t first_node = 0);
   void add_point_or_line(bool is_line) { ++mesh_.num_other_elements[is_line ? 1 : 0]; }

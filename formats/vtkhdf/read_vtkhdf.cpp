@@ -62,7 +62,7 @@ void read_cells(const hdf5::FileReader& file, vtk::MeshAssembly& mesh) {
       const auto kind = type < 0 || type > 255 ? std::nullopt : vtk::element_kind(static_cast<int>(type));
       if (!kind)
         file.fail("/VTKHDF/Types", fmt::format("cell {} is of VTK type {}, which is not read", cell, type),
-                  ErrorCode::format_limit);
+                  ErrorCode::file_syntax);
       if (end - begin != mesh::nodes_of(*kind))
         file.fail("/VTKHDF/Offsets", fmt::format("cell {} of type {} has {} corners", cell, type, end - begin));
       mesh.add_element(

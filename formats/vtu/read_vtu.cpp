@@ -76,7 +76,7 @@ void read_piece(const ArrayReader& reader, const XmlElement& piece, vtk::MeshAss
     }
     const auto kind = types[i] < 0 || types[i] > 255 ? std::nullopt : vtk::element_kind(static_cast<int>(types[i]));
     if (!kind)
-      reader.fail(piece, fmt::format("cell {} is of VTK type {}, which is not read", i, types[i]), ErrorCode::format_limit);
+      reader.fail(piece, fmt::format("cell {} is of VTK type {}, which is not read", i, types[i]), ErrorCode::file_syntax);
     if (count != mesh::nodes_of(*kind))
       reader.fail(connectivity, fmt::format("cell {} of type {} has {} corners", i, types[i], count));
     const auto& tags = mesh::dimension_of(*kind) == 3 ? volume_tags : face_tags;

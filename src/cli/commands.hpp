@@ -14,6 +14,8 @@ struct Command {
 };
 
 [[nodiscard]] Command add_mesh_command(CLI::App& program);
+[[nodiscard]] Command add_init_command(CLI::App& program);
+[[nodiscard]] Command add_ports_command(CLI::App& program);
 [[nodiscard]] Command add_inspect_command(CLI::App& program);
 [[nodiscard]] Command add_render_command(CLI::App& program);
 [[nodiscard]] Command add_view_command(CLI::App& program);

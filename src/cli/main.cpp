@@ -18,6 +18,8 @@ constexpr const char* about =
     "pcbmesh turns a board layout into a conformal, tagged prism mesh for field solvers.\n\n"
     "Examples:\n"
     "  pcbmesh inspect board.kicad_pcb                     layers, nets, sizes\n"
+    "  pcbmesh init board.kicad_pcb --nets /USB_P,/USB_N -o usb.study.json\n"
+    "  pcbmesh mesh board.kicad_pcb --study usb.study.json -o usb.msh\n"
     "  pcbmesh mesh board.kicad_pcb -o board.msh           the whole board\n"
     "  pcbmesh mesh board.kicad_pcb --nets /USB_P,/USB_N --margin 2mm --frequency 10GHz -o usb.msh\n"
     "  pcbmesh view board.kicad_pcb -o board.html          the mesh to look at, in any browser\n"
@@ -30,9 +32,10 @@ int run(int argc, char** argv) {
   program.set_version_flag("--version", std::string("pcbmesh ") + std::string(pcbmesh::version()));
   program.require_subcommand(1);
   program.get_formatter()->column_width(34);
-  const std::array commands{pcbmesh::cli::add_mesh_command(program),      pcbmesh::cli::add_inspect_command(program),
-                            pcbmesh::cli::add_view_command(program),      pcbmesh::cli::add_render_command(program),
-                            pcbmesh::cli::add_check_command(program),     pcbmesh::cli::add_formats_command(program),
+  const std::array commands{pcbmesh::cli::add_mesh_command(program),  pcbmesh::cli::add_init_command(program),
+                            pcbmesh::cli::add_ports_command(program), pcbmesh::cli::add_inspect_command(program),
+                            pcbmesh::cli::add_view_command(program),  pcbmesh::cli::add_render_command(program),
+                            pcbmesh::cli::add_check_command(program), pcbmesh::cli::add_formats_command(program),
                             pcbmesh::cli::add_touchstone_command(program)};
   try {
     program.parse(argc, argv);

@@ -104,7 +104,6 @@ std::shared_ptr<StudyOptions> add_study_options(CLI::App& command) {
 
 study::Study study_from(const StudyOptions& o) {
   study::Study s = o.file.empty() ? study::Study{} : study::read_study(o.file);
-  if (!o.nets.empty() && !o.region.empty()) throw Error(ErrorCode::usage, "--nets and --region exclude each other; give one");
   if (!o.nets.empty()) {
     s.region = study::RegionKind::nets;
     s.nets = split_at_commas(o.nets);

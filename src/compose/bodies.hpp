@@ -12,8 +12,8 @@ namespace pcbmesh::compose {
 
 /// Priorities of bodies where they overlap; the highest wins.
 inline constexpr std::int32_t copper_priority = 2;
-inline constexpr std::int32_t mask_priority = 2;  ///< in slabs of its own
-inline constexpr std::int32_t hole_priority = 3;  ///< unplated holes, openings of the mask
+inline constexpr std::int32_t mask_priority = 1;  ///< in slabs of its own, below its openings
+inline constexpr std::int32_t hole_priority = 3;  ///< unplated holes
 inline constexpr std::int32_t barrel_priority = 4;
 inline constexpr std::int32_t core_priority = 5;       ///< what is inside a barrel
 inline constexpr std::int32_t backdrill_priority = 6;  ///< drilled when all else is done

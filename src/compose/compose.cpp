@@ -248,4 +248,15 @@ model::Model compose(const Board& board, const Study& study, Diagnostics& diagno
   return model::Model::from_parts(std::move(parts));
 }
 
+std::vector<PortProposal> propose_ports(const Board& board, const Study& study, Diagnostics& diagnostics) {
+  study::check(study);
+  MaterialTable materials(board, study, diagnostics);
+  const ResolvedNames names = resolve_names(board, study, materials);
+  if (!names.unknown.empty()) throw Error(ErrorCode::name_unknown, names.unknown, {.file = board.source()});
+  const Footprint footprint = build_footprint(board, study, names.nets, diagnostics);
+  const Stack stack =
+      build_stack(board, study, find_sheet_layers(board, study, names.rules, footprint), names.fills, materials, diagnostics);
+  return find_ports(board, study, names.rules, footprint, stack, names.nets);
+}
+
 }  // namespace pcbmesh::compose

@@ -114,8 +114,15 @@ class HoleBuilder {
       for (const geometry::Point p : edge) edge_box.add(p);
       if (!edge_box.touches(box)) return false;
       if (rings.empty()) rings = geometry::outline(drill.figure, study_.arcs, simple);
+      // A corner of the hole may lie exactly on the outline, so what counts is whether there is hole on both sides.
+      bool is_inside = false, is_outside = false;
       for (const Ring& ring : rings)
-        if (geometry::contact(ring, edge).kind == geometry::ContactKind::crossing) return true;
+        for (const geometry::Point p : ring) {
+          const int side = geometry::location(p, edge);
+          is_inside = is_inside || side > 0;
+          is_outside = is_outside || side < 0;
+        }
+      if (is_inside && is_outside) return true;
       return false;
     };
     for (const std::vector<Ring>& board : footprint_.boards)

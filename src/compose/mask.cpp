@@ -46,7 +46,8 @@ void add_mask(const board::Board& board, const study::Study& study, const Footpr
                    .material = stack.air,
                    .first_slab = mask.slabs.first,
                    .last_slab = mask.slabs.last,
-                   .priority = hole_priority},
+                   // Above the film, not above copper: a sheet under the opening is still there.
+                   .priority = copper_priority},
                   std::move(openings));
   }
 }

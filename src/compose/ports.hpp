@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "pcbmesh/board/board.hpp"
+#include "pcbmesh/compose/compose.hpp"
 #include "pcbmesh/model/model.hpp"
 #include "pcbmesh/study/study.hpp"
 #include "src/compose/bodies.hpp"
@@ -17,5 +19,10 @@ namespace pcbmesh::compose {
 /// @param stack  its slabs and materials are still there.
 void add_ports(const board::Board& board, const study::Study& study, const std::vector<ResolvedRule>& rules,
                const Footprint& footprint, const Stack& stack, model::ModelParts& parts, std::vector<study::Fault>& faults);
+
+/// Every pin of the nets in the domain, and every cut, as a lumped port to the plane found there, or why not.
+[[nodiscard]] std::vector<PortProposal> find_ports(const board::Board& board, const study::Study& study,
+                                                   const std::vector<ResolvedRule>& rules, const Footprint& footprint,
+                                                   const Stack& stack, std::span<const std::int32_t> nets);
 
 }  // namespace pcbmesh::compose

@@ -213,44 +213,4 @@ std::size_t knee_of(std::span<const FrontPoint> front) {
   return knee;
 }
 
-std::int64_t num_edges(const mesh::PrismMesh& mesh) {
-  const mesh::PlanarMesh& planar = mesh.planar();
-  const mesh::LayerPlan& plan = mesh.plan();
-  const std::int32_t num_slabs = plan.num_slabs();
-  std::int64_t total = 0;
-  // Upright edges stand over the vertices of a slab.
-  for (std::int32_t slab = 0; slab < num_slabs; ++slab) {
-    std::vector<bool> is_there(static_cast<std::size_t>(planar.num_points()), false);
-    for (std::int32_t t = 0; t < planar.num_triangles(); ++t)
-      if (mesh.tag_of(slab, t) >= 0)
-        for (const std::int32_t v : planar.triangles()[static_cast<std::size_t>(t)])
-          is_there[static_cast<std::size_t>(v)] = true;
-    total += std::count(is_there.begin(), is_there.end(), true) * (plan.first_sublayer(slab + 1) - plan.first_sublayer(slab));
-  }
-  // Level edges: each planar edge once per level that touches a prism beside it.
-  std::vector<std::pair<std::array<std::int32_t, 2>, std::int32_t>> sides;  // edge, triangle
-  for (std::int32_t t = 0; t < planar.num_triangles(); ++t) {
-    const auto& corners = planar.triangles()[static_cast<std::size_t>(t)];
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto [u, v] = std::minmax(corners[i], corners[(i + 1) % 3]);
-      sides.push_back({{u, v}, t});
-    }
-  }
-  std::sort(sides.begin(), sides.end());
-  for (std::size_t i = 0; i < sides.size();) {
-    std::size_t end = i + 1;
-    while (end < sides.size() && sides[end].first == sides[i].first) ++end;
-    bool below = false;
-    for (std::int32_t slab = 0; slab < num_slabs; ++slab) {
-      bool here = false;
-      for (std::size_t k = i; k < end; ++k) here = here || mesh.tag_of(slab, sides[k].second) >= 0;
-      total += (here || below ? 1 : 0) + (here ? plan.first_sublayer(slab + 1) - plan.first_sublayer(slab) - 1 : 0);
-      below = here;
-    }
-    total += below ? 1 : 0;
-    i = end;
-  }
-  return total;
-}
-
 }  // namespace pcbmesh::layering

@@ -43,7 +43,13 @@ class ConductorColumns {
 }  // namespace
 
 bool has_fillers(const model::Model& model) {
-  return std::ranges::any_of(model.bodies(), [](const model::Body& body) { return body.kind == model::BodyKind::filler; });
+  // Etched copper is a stack of bodies in slabs of their own: what is missing from a stair is taken away as well.
+  const auto slabs = model.slabs();
+  const bool has_stairs = std::ranges::adjacent_find(slabs, [](const model::Slab& low, const model::Slab& high) {
+                            return low.kind == model::SlabKind::copper && high.kind == model::SlabKind::copper;
+                          }) != slabs.end();
+  return has_stairs ||
+         std::ranges::any_of(model.bodies(), [](const model::Body& body) { return body.kind == model::BodyKind::filler; });
 }
 
 std::vector<std::int32_t> count_pieces_by_cells(const EdgeGraph& graph, const Faces& faces, const LabelPool& labels,

@@ -120,7 +120,7 @@ Forecast forecast(const mesh::PlanarMesh& outlines, std::optional<double> fed_ba
   }
   std::vector<int> chosen(counts.begin(), counts.end());
   if (chosen.empty())
-    chosen = study.paper_compat ? layering::paper_counts(model.slabs(), study.policy, height_m.value_or(0))
+    chosen = study.paper_compat ? layering::paper_counts(model.slabs(), study.policy)
                                 : layering::sublayer_counts(model.slabs(), study.sublayers, height_m, heights);
   const mesh::LayerPlan plan =
       layering::divide_layers(model.slabs(), chosen, layering::slab_limits(model, study), study.height_bounds.height_growth)

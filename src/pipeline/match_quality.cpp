@@ -11,6 +11,7 @@
 
 #include "pcbmesh/base/error.hpp"
 #include "pcbmesh/extrude/extrude.hpp"
+#include "pcbmesh/mesh/unknowns.hpp"
 
 namespace pcbmesh::pipeline {
 namespace {
@@ -161,7 +162,7 @@ class Matching {
                    planar.mesh.num_triangles(),
                    layers.plan.num_sublayers(),
                    prisms.num_prisms(),
-                   layering::num_edges(prisms),
+                   mesh::count_entities(prisms).edges,
                    quality.mean_prism,
                    quality.volume_weighted_prism,
                    false};

@@ -79,8 +79,10 @@ std::int64_t num_prisms(const mesh::PlanarMesh& planar, const mesh::LayerPlan& p
 
 }  // namespace
 
-MeshBoardResult mesh_board(const board::Board& board, const study::Study& study, const Progress& progress) {
-  study::check(study);
+MeshBoardResult mesh_board(const board::Board& board, const study::Study& given, const Progress& progress) {
+  study::check(given);
+  study::Study study = given;
+  study.frequency_hz = study::highest_frequency_hz(given);
   Diagnostics diagnostics;
   std::vector<StepTime> times;
   Stopwatch timed(times);
@@ -104,6 +106,7 @@ MeshBoardResult mesh_board(const board::Board& board, const study::Study& study,
   if (study.edge_at_copper) options.grading = triangulate::Grading{static_cast<double>(*study.edge_at_copper), study.growth};
   options.seed = study.seed == study::TriangleSeed::hex ? triangulate::Seed::hexagonal : triangulate::Seed::delaunay;
   options.smooth = study.smooth;
+  options.split_sheet_chords = study.solver == study::Solver::palace;
   options.as_in_paper = study.paper_compat;
   triangulate::TriangulateResult planar =
       timed("triangulate", [&] { return triangulate::triangulate(graph.graph, model, options, diagnostics, progress); });

@@ -82,7 +82,6 @@ OutputResult write_outputs(const MeshBoardResult& result, const OutputOptions& o
   const auto num_volumes = static_cast<std::int32_t>(result.mesh.volume_tags().size());
   formats::tags_json::write_tags(result.mesh, tags, options.write.unit, options.write.one_number_space ? num_volumes : 0);
   write_text_file(study, study::to_json(result.resolved));
-  mesh::PrismSource source(result.mesh, layering::prism_quality);
   for (const std::filesystem::path& file : options.meshes) {
     formats::write_mesh(source, file, options.write, options.format, progress);
     out.files.push_back(file.string());

@@ -58,10 +58,8 @@ inline double read_frequency_hz(const JsonValue& field) {
 [[nodiscard]] Json optional_length(const std::optional<Nm>& value);
 [[nodiscard]] Json corner(geometry::Point p);
 
-[[nodiscard]] Json port_json(const Port& port);
-
 /// Fields "problem", "solver", "ports", "boundaries", "sweep" and "modes".
 void read_physics(const JsonValue& root, Study& study);
-void write_physics(const Study& study, Json& root);
+void write_physics(const Study& study, const StudyWords& words, Json& root);
 
 }  // namespace pcbmesh::study

@@ -94,6 +94,27 @@ void check_boundaries(const Study& study, FaultList& faults) {
   }
 }
 
+/// What the named solver cannot do is refused before anything is meshed.
+void check_solver(const Study& study, FaultList& faults) {
+  if (study.solver == Solver::none) return;
+  if (study.problem == Problem::driven) {
+    if (std::ranges::none_of(study.ports, [](const Port& port) { return port.excited; }))
+      faults.add("/ports", "a driven problem needs a port that is excited; `pcbmesh ports` proposes some");
+    if (!study.sweep) faults.add("/sweep", "a driven problem needs frequencies; give from, to and points, or a list");
+  }
+  if (study.solver == Solver::dolfinx && study.problem != Problem::electrostatic)
+    faults.add("/solver",
+               fmt::format("dolfinx has no edge elements on prisms, so a {} problem can't be posed; take palace, getdp, "
+                           "elmer or mfem, or problem electrostatic",
+                           name_of(study.problem)));
+  if (study.solver == Solver::palace) return;
+  for (std::size_t i = 0; i < study.ports.size() && study.problem == Problem::driven; ++i)
+    if (study.ports[i].kind == PortKind::wave)
+      faults.add(
+          fmt::format("/ports/{}/kind", i),
+          fmt::format("wave port '{}': only palace solves wave ports; make it lumped, or take palace", study.ports[i].name));
+}
+
 }  // namespace
 
 std::vector<double> Sweep::frequencies_hz() const {
@@ -145,6 +166,7 @@ BoundaryKind parse_boundary_kind(std::string_view text) {
 void check_physics(const Study& study, FaultList& faults) {
   check_ports(study, faults);
   check_boundaries(study, faults);
+  check_solver(study, faults);
   if (study.sweep) check_sweep(*study.sweep, faults);
   if (study.modes.number < 1 || study.modes.number > 1000)
     faults.add("/modes/number", fmt::format("{} is out of range; expected 1 to 1000", study.modes.number));

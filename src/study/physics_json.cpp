@@ -83,13 +83,15 @@ Json place_json(const PortPlace& place) {
     if (!place.layer.empty()) out["layer"] = place.layer;
     return out;
   }
-  if (place.side) return {{"side", name_of(*place.side)}};
+  if (place.side) {
+    Json out{{"side", name_of(*place.side)}};
+    if (!place.layer.empty()) out["layer"] = place.layer;
+    return out;
+  }
   return {{"pin", place.pin}};
 }
 
-}  // namespace
-
-Json port_json(const Port& port) {
+Json port_json(const Port& port, const std::string& note) {
   Json out{{"name", port.name},
            {"kind", name_of(port.kind)},
            {"net", port.net},
@@ -100,7 +102,22 @@ Json port_json(const Port& port) {
            {"excited", port.excited},
            {"width", optional_length(port.width)}};
   if (port.kind == PortKind::wave) out["height"] = optional_length(port.height);
+  if (!note.empty()) out["note"] = note;
   return out;
+}
+
+Json all_ports_json(const Study& study, const StudyWords& words) {
+  Json ports = Json::array();
+  for (std::size_t i = 0; i < study.ports.size(); ++i)
+    ports.push_back(port_json(study.ports[i], i < words.port_notes.size() ? words.port_notes[i] : ""));
+  return ports;
+}
+
+}  // namespace
+
+std::string ports_json(const Study& study, const StudyWords& words) {
+  const std::string object = Json{{"ports", all_ports_json(study, words)}}.dump(2, ' ', false, Json::error_handler_t::replace);
+  return object.substr(2, object.size() - 4) + "\n";  // without the braces: a member to paste
 }
 
 void read_physics(const JsonValue& root, Study& study) {
@@ -117,11 +134,10 @@ void read_physics(const JsonValue& root, Study& study) {
   }
 }
 
-void write_physics(const Study& study, Json& root) {
+void write_physics(const Study& study, const StudyWords& words, Json& root) {
   root["problem"] = name_of(study.problem);
   root["solver"] = name_of(study.solver);
-  root["ports"] = Json::array();
-  for (const Port& port : study.ports) root["ports"].push_back(port_json(port));
+  root["ports"] = all_ports_json(study, words);
   Json& boundaries = root["boundaries"];
   for (std::size_t i = 0; i < num_hull_sides; ++i)
     boundaries[std::string(hull_side_names[i].name)] = boundary_json(study.boundaries[i]);

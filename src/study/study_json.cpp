@@ -209,8 +209,14 @@ Study read_study(const std::filesystem::path& file) {
 }
 
 std::string to_json(const Study& study) {
+  return to_json(study, {});
+}
+
+std::string to_json(const Study& study, const StudyWords& words) {
   Json root;
+  if (!words.schema.empty()) root["$schema"] = words.schema;
   root["schema_version"] = Study::schema_version;
+  if (!words.note.empty()) root["note"] = words.note;
   Json& region = root["region"];
   region["kind"] = name_of(study.region);
   region["nets"] = study.nets;
@@ -248,7 +254,7 @@ std::string to_json(const Study& study) {
   root["arcs"] = Json{{"sagitta", exact_length(study.arcs.sagitta_nm)}, {"mode", name_in(arc_names, study.arcs.mode)}};
   root["output"] = Json{{"unit", name_of(study.unit)}};
   root["limits"] = Json{{"max_prisms", study.max_prisms}};
-  write_physics(study, root);
+  write_physics(study, words, root);
   write_fabrication(study.fabrication, root);
   // A net name may hold any bytes; those that are no UTF-8 are replaced rather than refused.
   return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -12,7 +12,7 @@
 
 #include "pcbmesh/base/error.hpp"
 #include "src/triangulate/copper_distance.hpp"
-#include "src/triangulate/delaunay_flips.hpp"
+#include "src/triangulate/split_edge.hpp"
 
 namespace pcbmesh::triangulate {
 namespace {
@@ -67,47 +67,16 @@ std::vector<Point2> lattice_in_domain(const Cdt& cdt, const HexSeed& seed, const
   return points;
 }
 
-/// Puts a vertex at p on the constrained edge a-b, unless p, which is rounded, would turn a triangle over.
-Vertex split(Cdt& cdt, Vertex a, Vertex b, const Point2& p) {
-  Cdt::Face_handle face;
-  int i = 0;
-  if (!cdt.is_edge(a, b, face, i)) report_bug("a constrained edge is an edge", __FILE__, __LINE__);
-  const Cdt::Face_handle other = face->neighbor(i);
-  const int j = other->index(face);
-  // Counter-clockwise round the two faces, each edge seen from outside.
-  const std::array<std::pair<Cdt::Face_handle, int>, 4> sides{
-      {{face, Cdt::cw(i)}, {other, Cdt::ccw(j)}, {other, Cdt::cw(j)}, {face, Cdt::ccw(i)}}};
-  std::array<Cdt::Edge, 4> outer;
-  for (std::size_t k = 0; k < 4; ++k) {
-    const auto& [inner, side] = sides[k];
-    const Vertex from = inner->vertex(Cdt::ccw(side)), to = inner->vertex(Cdt::cw(side));
-    if (!cdt.is_infinite(from) && !cdt.is_infinite(to) && cdt.orientation(from->point(), to->point(), p) != CGAL::LEFT_TURN)
-      return {};
-    outer[k] = {inner->neighbor(side), cdt.mirror_index(inner, side)};
-  }
-  const std::array<Cdt::Face_handle, 2> hole{face, other};
-  const Vertex v = cdt.star_hole(p, outer.begin(), outer.end(), hole.begin(), hole.end());
-  for (const Vertex end : {a, b}) {
-    if (!cdt.is_edge(v, end, face, i)) report_bug("a split edge has two halves", __FILE__, __LINE__);
-    face->set_constraint(i, true);
-    face->neighbor(i)->set_constraint(cdt.mirror_index(face, i), true);
-  }
-  make_delaunay_round(cdt, v);
-  return v;
-}
-
 void subdivide(Cdt& cdt, const GraphEdgeIndex& graph_edges, Vertex a, Vertex b, double wanted) {
   // Left to right whatever way the edge was found: the points are the same in any order of the edges.
   if (b->point() < a->point()) std::swap(a, b);
-  const std::int32_t edge = a->is_on_graph_edge()   ? a->graph_edge()
-                            : b->is_on_graph_edge() ? b->graph_edge()
-                                                    : graph_edges.find(a->graph_vertex(), b->graph_vertex());
+  const std::int32_t edge = graph_edge_of(graph_edges, a, b);
   const Point2 from = a->point(), to = b->point();
   const double length = std::sqrt(CGAL::squared_distance(from, to));
   const auto pieces = static_cast<std::int64_t>(std::round(length / wanted));
   for (std::int64_t k = 1; k < pieces; ++k) {
     const double t = static_cast<double>(k) / static_cast<double>(pieces);
-    const Vertex v = split(cdt, a, b, {from.x() + t * (to.x() - from.x()), from.y() + t * (to.y() - from.y())});
+    const Vertex v = split_edge(cdt, a, b, {from.x() + t * (to.x() - from.x()), from.y() + t * (to.y() - from.y())});
     if (v == Vertex()) return;
     v->set_graph_edge(edge);
     a = v;

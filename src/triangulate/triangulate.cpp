@@ -16,6 +16,7 @@
 #include "src/triangulate/hex_seed.hpp"
 #include "src/triangulate/insert_graph.hpp"
 #include "src/triangulate/refine.hpp"
+#include "src/triangulate/sheet_chords.hpp"
 #include "src/triangulate/smooth.hpp"
 
 namespace pcbmesh::triangulate {
@@ -26,6 +27,7 @@ constexpr double floor_nm = 50;
 // Measured on the paper's examples and real boards: later sweeps gain less than 0.1 % of quality.
 constexpr int seed_sweeps = 10;
 constexpr int guarded_sweeps = 20;
+constexpr int chord_rounds = 3;
 // Before refinement needles at outlines are normal; this keeps smoothing from making new ones (8 degrees).
 constexpr double seed_guard_sine2 = 0.02;
 
@@ -142,6 +144,16 @@ TriangulateResult triangulate(const mesh::PlanarGraph& graph, const model::Model
   if (options.smooth) {
     smooth(cdt, bounds, {guarded_sweeps, bounds.sine2_bound()}, progress);
     refine(cdt, bounds, graph_edges, limits, options.as_in_paper, progress);  // flips may have made an edge too long
+  }
+  if (options.split_sheet_chords) {
+    // Splitting makes angles smaller and refinement may put vertices on rims again: twice for quality, at last for the rule.
+    for (int round = 0; round < chord_rounds; ++round) {
+      const std::int64_t num_splits = split_sheet_chords(cdt, graph, graph_edges, model);
+      statistics.num_chord_splits += num_splits;
+      if (num_splits == 0 || round + 1 == chord_rounds) break;
+      mark_domain(cdt, flood(cdt, graph, graph_edges));
+      refine(cdt, bounds, graph_edges, limits, options.as_in_paper, progress);
+    }
   }
   statistics.refine_s = clock.lap();
 

@@ -30,7 +30,7 @@ Canvas::Canvas(int width, int height)
       nearness_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), -std::numeric_limits<float>::max()),
       colours_(nearness_.size(), 0) {}
 
-void Canvas::fill(std::span<const Corner> corners, Rgb colour, double edge_strength, unsigned sides) {
+void Canvas::fill(std::span<const Corner> corners, Rgb colour, double edge_strength, unsigned sides, double forward) {
   const std::size_t size = std::min(corners.size(), most_corners);
   std::array<Corner, most_corners> at{};
   double twice_area = 0, top = std::numeric_limits<double>::max(), bottom = -top;
@@ -80,7 +80,8 @@ void Canvas::fill(std::span<const Corner> corners, Rgb colour, double edge_stren
     const int first = static_cast<int>(std::ceil(left)), last = static_cast<int>(std::floor(right));
     const std::size_t line = static_cast<std::size_t>(row) * static_cast<std::size_t>(width_);
     for (int x = first; x <= last; ++x) {
-      const auto nearness = static_cast<float>(at[0][2] + slope_x * (x - at[0][0]) + slope_y * (row - at[0][1]));
+      const double here = at[0][2] + slope_x * (x - at[0][0]) + slope_y * (row - at[0][1]);
+      const auto nearness = static_cast<float>(here + forward * std::abs(here));
       const std::size_t sample = line + static_cast<std::size_t>(x);
       if (!(nearness > nearness_[sample])) continue;
       nearness_[sample] = nearness;

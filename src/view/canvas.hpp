@@ -19,7 +19,8 @@ class Canvas {
   using Corner = std::array<double, 3>;
   /// Fills a convex polygon that runs counter-clockwise on a picture with y down; others face away and are left out.
   /// @param edge_strength  0 to 1: how dark its sides are drawn. `sides`: bit i = side from corner i is drawn.
-  void fill(std::span<const Corner> corners, Rgb colour, double edge_strength, unsigned sides);
+  /// @param forward  share of its nearness by which it comes before a face in the same place.
+  void fill(std::span<const Corner> corners, Rgb colour, double edge_strength, unsigned sides, double forward = 0);
 
   /// Averaged pixels over a background, RGB or RGBA.
   [[nodiscard]] std::vector<std::uint8_t> pixels(const Background& background) const;

@@ -20,7 +20,7 @@ constexpr std::array<std::string_view, 8> mode_titles{
     "Material", "Net", "Layer", "Volume group", "Face tag", "Prism quality q_p", "Triangle quality q_t", "Longest edge, mm"};
 constexpr double copper_like_s_per_m = 1e5;
 constexpr double golden_angle = 0.38196601125;
-constexpr Rgb untagged{150, 156, 163};
+constexpr Rgb untagged{150, 156, 163}, port_colour{224, 36, 130}, sheet_colour{205, 127, 60};
 
 std::size_t index(std::int32_t i) {
   return static_cast<std::size_t>(i);
@@ -224,6 +224,14 @@ Rgb Paint::of(const SkinFace& face) const {
   return is_conductor_[index(group)] != 0 ? mix(own, groups_[index(group)], mode_ == ColourMode::net ? 0.75 : 0.5) : own;
 }
 
+std::optional<Rgb> Paint::of_tag(std::int32_t face_tag) const {
+  const mesh::FaceTag& tag = mesh_.face_tags()[index(face_tag)];
+  if (mode_ == ColourMode::face_tag) return group_colour(face_tag);
+  if (tag.kind == mesh::FaceTagKind::port || tag.kind == mesh::FaceTagKind::wave_port) return port_colour;
+  if (tag.kind != mesh::FaceTagKind::sheet || is_continuous(mode_)) return {};
+  return mode_ == ColourMode::net ? net_colour(tag.net) : sheet_colour;
+}
+
 Rgb Paint::of_group(std::int32_t group) const {
   return groups_[index(group)];
 }
@@ -256,6 +264,11 @@ std::vector<LegendEntry> Paint::legend(const std::vector<char>& hidden_groups) c
     }
     if (std::none_of(out.begin(), out.end(), [&](const LegendEntry& e) { return e.name == name; }))
       out.push_back({std::move(name), groups_[i]});
+  }
+  for (std::size_t i = 0; i < mesh_.face_tags().size(); ++i) {
+    const mesh::FaceTag& tag = mesh_.face_tags()[i];
+    const std::optional<Rgb> colour = of_tag(static_cast<std::int32_t>(i));
+    if (tag.is_inner && colour) out.push_back({tag.name, *colour});
   }
   return out;
 }

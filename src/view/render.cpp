@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "pcbmesh/base/error.hpp"
 #include "src/view/canvas.hpp"
@@ -22,6 +23,7 @@ constexpr double fades_below = 3, full_above = 14;
 /// Sub-layers of a wall are told apart where they are at least so many pixels high.
 constexpr double least_sublayer_pixels = 3;
 constexpr unsigned all_sides = ~0U;
+constexpr double before_hull = 2e-5;
 
 std::size_t index(std::int32_t i) {
   return static_cast<std::size_t>(i);
@@ -77,6 +79,23 @@ class Drawing {
     canvas_.fill(shown, colour, edge_strength(options_.edges, area_of(shown) / (is_standing ? cuts : 1)), all_sides);
   }
 
+  /// Tagged faces inside, seen from both sides, before a hull that lies in the same place.
+  void draw(const TaggedFace& tagged) {
+    const std::optional<Rgb> colour = paint_.of_tag(tagged.tag);
+    if (!colour) return;
+    const SkinPolygon polygon = polygon_of(mesh_, options_.visibility, tagged.face);
+    if (polygon.size == 0) return;
+    std::array<Canvas::Corner, 6> corners;
+    for (int i = 0; i < polygon.size; ++i)
+      corners[index(i)] = stage_.project(stage_.place(polygon.corners[index(i)], tagged.face.slab));
+    const auto shown = std::span(corners).first(index(polygon.size));
+    const Rgb lit = mix({0, 0, 0}, *colour, light_on({0, 0, 1}));
+    for (int side = 0; side < 2; ++side) {
+      canvas_.fill(shown, lit, edge_strength(options_.edges, area_of(shown)), all_sides, before_hull);
+      std::reverse(shown.begin(), shown.end());
+    }
+  }
+
   [[nodiscard]] std::string png() const {
     return encode_png(options_.width, options_.height, options_.background.transparent ? 4 : 3,
                       canvas_.pixels(options_.background));
@@ -117,6 +136,7 @@ std::string render_png(const mesh::PrismMesh& mesh, const PictureOptions& option
   visit_skin(mesh, options.visibility, [&](std::span<const SkinFace> faces) {
     for (const SkinFace& face : faces) drawing.draw(face);
   });
+  visit_inner_faces(mesh, options.visibility, [&](const TaggedFace& face) { drawing.draw(face); });
   return drawing.png();
 }
 

@@ -70,6 +70,9 @@ Json face_tags_json(const mesh::PrismMesh& mesh) {
     const mesh::FaceTag& tag = mesh.face_tags()[i];
     tags.push_back({{"id", tag.id},
                     {"name", tag.name},
+                    {"kind", name_of(tag.kind)},
+                    {"inner", tag.is_inner},
+                    {"condition", name_of(tag.condition)},
                     {"triangles", tag.num_triangles},
                     {"quads", tag.num_quads},
                     {"area_m2", tag.area_m2},

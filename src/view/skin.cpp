@@ -2,8 +2,8 @@
 #include "pcbmesh/view/skin.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <numeric>
+#include <map>
+#include <utility>
 
 #include "src/view/planar_edges.hpp"
 
@@ -253,6 +253,34 @@ void visit_skin(const mesh::PrismMesh& mesh, const Visibility& visibility, const
   put_walls(mesh, shown, out);
   if (visibility.section) put_section(mesh, shown, *visibility.section, out);
   out.flush();
+}
+
+void visit_inner_faces(const mesh::PrismMesh& mesh, const Visibility& visibility, const TaggedFaceVisitor& visit) {
+  const auto is_inner = [&](std::int32_t tag) { return mesh.face_tags()[index(tag)].is_inner; };
+  if (std::none_of(mesh.face_tags().begin(), mesh.face_tags().end(), [](const mesh::FaceTag& tag) { return tag.is_inner; }))
+    return;
+  const Shown shown(mesh, visibility);
+  for (const mesh::Cap& cap : mesh.caps()) {
+    if (!is_inner(cap.tag) || shown.is_beyond(cap.triangle)) continue;
+    const std::int32_t above = mesh.plan().slab_of_sublayer()[index(cap.level)];
+    if (shown.class_of(above - 1, cap.triangle) < 0 && shown.class_of(above, cap.triangle) < 0) continue;
+    visit({{SkinFaceKind::up, above - 1, cap.triangle, -1, -1, mesh.tag_of(above - 1, cap.triangle), -1}, cap.tag});
+  }
+  std::map<std::array<std::int32_t, 2>, std::array<std::int32_t, 2>> beside;  // edge -> triangles to its left and right
+  for (const mesh::Wall& wall : mesh.walls())
+    if (is_inner(wall.tag)) beside[{std::min(wall.a, wall.b), std::max(wall.a, wall.b)}] = {-1, -1};
+  if (beside.empty()) return;
+  visit_planar_edges(mesh.planar(), [&](const PlanarEdge& edge) {
+    const auto found = beside.find({std::min(edge.a, edge.b), std::max(edge.a, edge.b)});
+    if (found != beside.end()) found->second = {edge.left, edge.right};
+  });
+  for (const mesh::Wall& wall : mesh.walls()) {
+    if (!is_inner(wall.tag)) continue;
+    const auto& [left, right] = beside.at({std::min(wall.a, wall.b), std::max(wall.a, wall.b)});
+    if (shown.class_of(wall.slab, left) < 0 && shown.class_of(wall.slab, right) < 0) continue;
+    if (shown.is_beyond(left)) continue;
+    visit({{SkinFaceKind::wall, wall.slab, left, wall.a, wall.b, mesh.tag_of(wall.slab, left), -1}, wall.tag});
+  }
 }
 
 SkinCount count_skin(const mesh::PrismMesh& mesh, const Visibility& visibility) {

@@ -204,7 +204,7 @@ TEST(Fabrication, ViasInArraysBecomeBlocks) {
   ASSERT_EQ(words.count("compose.merged_vias"), 1);
   for (const Diagnostic& d : words.entries()) {
     if (d.code == "compose.merged_vias") {
-      EXPECT_EQ(d.text.substr(0, 60), "12 vias are merged into 1 blocks (pitch up to 750 um); 3 via") << d.text;
+      EXPECT_EQ(d.text.substr(0, 61), "12 vias are merged into 1 blocks (pitch up to 0.75 mm); 3 via") << d.text;
     }
   }
   EXPECT_EQ(label_at(m, "core 1", 5.25, 5.25), "copper|A") << "between four vias";

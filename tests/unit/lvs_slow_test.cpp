@@ -238,18 +238,21 @@ class Damager {
   std::map<std::int32_t, int> pieces_;
 };
 
-/// A window with many vias, well inside the copper.
+/// A window with the tracks of many nets in it.
 Box busy_window(const Board& board, Nm half) {
+  std::vector<std::pair<Point, std::int32_t>> tracks;
+  for (const Shape& shape : board.shapes()) {
+    const Box b = geometry::bounds(shape.figure);
+    if (shape.kind == board::ShapeKind::track && shape.net >= 0)
+      tracks.push_back({{(b.min.x + b.max.x) / 2, (b.min.y + b.max.y) / 2}, shape.net});
+  }
   Point best{};
   std::size_t most = 0;
-  for (std::size_t i = 0; i < board.drills().size(); i += 1 + board.drills().size() / 200) {
-    const Point at = board.drills()[i].figure.path.points.front();
-    std::size_t count = 0;
-    for (const board::Drill& other : board.drills()) {
-      const Point q = other.figure.path.points.front();
-      if (std::abs(q.x - at.x) < half && std::abs(q.y - at.y) < half) ++count;
-    }
-    if (count > most) most = count, best = at;
+  for (std::size_t i = 0; i < tracks.size(); i += 1 + tracks.size() / 200) {
+    std::set<std::int32_t> nets;
+    for (const auto& [at, net] : tracks)
+      if (std::abs(at.x - tracks[i].first.x) < half && std::abs(at.y - tracks[i].first.y) < half) nets.insert(net);
+    if (nets.size() > most) most = nets.size(), best = tracks[i].first;
   }
   return {{best.x - half, best.y - half}, {best.x + half, best.y + half}};
 }

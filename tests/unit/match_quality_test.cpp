@@ -7,13 +7,12 @@
 #include <array>
 #include <cmath>
 #include <random>
-#include <set>
 #include <vector>
 
 #include "pcbmesh/base/error.hpp"
 #include "pcbmesh/formats/registry.hpp"
+#include "pcbmesh/mesh/unknowns.hpp"
 #include "pcbmesh/pipeline/mesh_board.hpp"
-#include "sample_prism_mesh.hpp"
 
 namespace pcbmesh::layering {
 namespace {
@@ -21,7 +20,8 @@ namespace {
 /// Ideal mesh of the predictor: one bin.
 HeightStatistics ideal(double edge_m, double area_m2, const TriangleShape& shape) {
   HeightStatistics h;
-  const double count = std::round(area_m2 / (shape.area * edge_m * edge_m)), quality = max_prism_quality * shape.triangle_quality;
+  const double count = std::round(area_m2 / (shape.area * edge_m * edge_m)),
+               quality = max_prism_quality * shape.triangle_quality;
   h.bins = {{shape.height * edge_m, quality * count, count, area_m2, quality * area_m2}};
   h.num_triangles = std::llround(count);
   h.minimum = h.average = h.maximum = h.weighted = shape.height * edge_m;
@@ -68,7 +68,8 @@ double least_of(const QualityStatistics& q) {
 TEST(MatchQuality, PredictorIsTheOneOfTheEvidenceForAnIdealMesh) {
   const TriangleShape shape = triangle_shape(study::TriangleSeed::delaunay, false);
   const HeightStatistics from = ideal(1e-3, 1e-4, shape), to = predict_heights(from, 1e-3, 2.5e-4, shape);
-  EXPECT_NEAR(static_cast<double>(to.num_triangles), 1e-4 / (0.198 * 2.5e-4 * 2.5e-4), 0.01 * static_cast<double>(to.num_triangles));
+  EXPECT_NEAR(static_cast<double>(to.num_triangles), 1e-4 / (0.198 * 2.5e-4 * 2.5e-4),
+              0.01 * static_cast<double>(to.num_triangles));
   // q ~ .912 x 1.0264 x f((H/n) / (.86 L))
   EXPECT_NEAR(mean_quality_at(to, 1e-4), 0.912 * 1.0264 * quality_falloff(1e-4 / (0.86 * 2.5e-4)), 1e-3);
   EXPECT_NEAR(area_quality_at(to, 1e-4), mean_quality_at(to, 1e-4), 1e-6);
@@ -142,17 +143,6 @@ TEST(MatchQuality, FrontAscendsAndItsKneeLiesInside) {
   EXPECT_TRUE(pareto_front(std::array{measured}, layers, std::array{1, 1, 1}, {}, 0, 10).empty());
 }
 
-TEST(MatchQuality, EdgesAreThoseOfTheMesh) {
-  const auto mesh = mesh::PrismMesh::from_parts(testing::sample_parts());
-  std::vector<std::array<std::int64_t, 6>> prisms(static_cast<std::size_t>(mesh.num_prisms()));
-  mesh.fill_prisms(0, prisms);
-  std::set<std::pair<std::int64_t, std::int64_t>> edges;
-  for (const auto& p : prisms)
-    for (const auto& [i, j] : {std::pair{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}})
-      edges.insert(std::minmax(p[static_cast<std::size_t>(i)], p[static_cast<std::size_t>(j)]));
-  EXPECT_EQ(num_edges(mesh), static_cast<std::int64_t>(edges.size()));
-}
-
 TEST(MatchQuality, TargetIsMetOnTheMeshWithFewerPrismsThanThePaper) {
   const auto result = mesh_example("via", target(0.7614));
   EXPECT_GE(least_of(result.quality), 0.7614);
@@ -161,7 +151,7 @@ TEST(MatchQuality, TargetIsMetOnTheMeshWithFewerPrismsThanThePaper) {
   const pipeline::MatchStep& chosen = result.match->steps[result.match->chosen];
   EXPECT_EQ(chosen.prisms, result.mesh.num_prisms()) << "the mesh verified is the mesh given";
   EXPECT_EQ(chosen.mean_prism, result.quality.mean_prism);
-  EXPECT_EQ(chosen.unknowns, num_edges(result.mesh));
+  EXPECT_EQ(chosen.unknowns, mesh::count_entities(result.mesh).edges);
   for (const pipeline::MatchStep& step : result.match->steps)
     if (step.meets) {
       EXPECT_GE(step.prisms, chosen.prisms);
@@ -174,8 +164,8 @@ TEST(MatchQuality, BudgetsAreKeptAndSpent) {
   EXPECT_GE(prisms.mesh.num_prisms(), 16'000);
   EXPECT_GE(least_of(prisms.quality), 0.78);
   const auto unknowns = mesh_example("serpentine", unknown_budget(40'000));
-  EXPECT_LE(num_edges(unknowns.mesh), 40'000);
-  EXPECT_GE(num_edges(unknowns.mesh), 32'000);
+  EXPECT_LE(mesh::count_entities(unknowns.mesh).edges, 40'000);
+  EXPECT_GE(mesh::count_entities(unknowns.mesh).edges, 32'000);
 }
 
 TEST(MatchQuality, GoalAndBoundsHoldTogetherAndVoidsAreSeen) {

@@ -88,7 +88,7 @@ TEST(Registry, MeshesAreReadByEndingPackedOrNot) {
   gzclose(packed);
   EXPECT_EQ(read_mesh(folder / "a.msh").cells.at(0).size(), mesh.num_prisms());
   EXPECT_EQ(read_mesh(packed_name).nodes, read_mesh(folder / "a.msh").nodes);
-  const Error error = error_of([&] { static_cast<void>(read_mesh(folder / "a.vtu")); });
+  const Error error = error_of([&] { static_cast<void>(read_mesh(folder / "a.pvtu")); });
   EXPECT_EQ(error.code(), ErrorCode::format_unknown);
   EXPECT_NE(error.text().find("these are read: msh"), std::string::npos) << error.text();
   EXPECT_EQ(error_of([&] { static_cast<void>(read_mesh(folder / "a.stl")); }).code(), ErrorCode::format_unknown);

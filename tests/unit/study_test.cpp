@@ -149,7 +149,8 @@ TEST(Study, NamesAndParsersAreInverse) {
   for (SublayerRule v :
        {SublayerRule::floor, SublayerRule::round, SublayerRule::ceil, SublayerRule::none, SublayerRule::optimal})
     EXPECT_EQ(parse_sublayer_rule(name_of(v)), v);
-  for (ConductorMode v : {ConductorMode::solid, ConductorMode::hollow, ConductorMode::sheet}) EXPECT_EQ(parse_conductor_mode(name_of(v)), v);
+  for (ConductorMode v : {ConductorMode::solid, ConductorMode::hollow, ConductorMode::sheet})
+    EXPECT_EQ(parse_conductor_mode(name_of(v)), v);
   EXPECT_EQ(name_of(RegionKind::box), "box");
   try {
     (void)parse_conductor_mode("holow");

@@ -107,6 +107,8 @@ TEST(TagsJson, ThePublishedSchemaNamesEveryKey) {
       json::parse(testing::contents(std::filesystem::path(PCBMESH_SOURCE_DIR) / "docs/schema/tags.schema.json"));
   mesh::PrismMeshParts parts = testing::sample_parts();
   parts.ports = {{.name = "P1", .positive_net = 1, .negative_net = 0}};
+  parts.net_pieces[1] = 1;
+  parts.materials[0].dispersion = {.kind = DispersionKind::debye, .eps_inf = 3, .poles = {{1, 1e9}}};
   EXPECT_EQ(schema_keys_of(schema), keys_of(written(parts)));
 }
 

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
+#include <string>
+#include <vector>
+
 #include "pcbmesh/base/diagnostics.hpp"
 #include "pcbmesh/board/board.hpp"
 #include "pcbmesh/model/model.hpp"
@@ -17,8 +21,24 @@ namespace pcbmesh::compose {
 /// A region keeps all copper inside its box; rings are clipped to a slightly larger box first, which bounds the cost,
 /// and the domain body cuts exactly.
 ///
-/// @throws Error name_unknown (304) with near misses, region_empty (305), outline_invalid (302), study_invalid (102).
+/// Ports come last: a body each, whose edges the overlay keeps straight.
+///
+/// @throws Error name_unknown (304) with near misses, port_invalid (306) naming every port at fault, region_empty (305),
+/// outline_invalid (302), study_invalid (102).
 /// @cost O(shape vertices).
 [[nodiscard]] model::Model compose(const board::Board& board, const study::Study& study, Diagnostics& diagnostics);
+
+/// A port that could be, or why it could not.
+struct PortProposal {
+  study::Port port;       ///< named P1, P2 ...; its reference is filled in
+  std::string about;      ///< "pin J1.2", "the cut at xmin"
+  std::string why_not{};  ///< empty: the port can be placed
+  std::array<double, 2> at_mm{};
+};
+
+/// Ports of study.nets from their pins and from where the region cuts them; those that can be placed first, end by end.
+/// @throws Error as compose. @cost O(shapes x ports).
+[[nodiscard]] std::vector<PortProposal> propose_ports(const board::Board& board, const study::Study& study,
+                                                      Diagnostics& diagnostics);
 
 }  // namespace pcbmesh::compose

@@ -22,11 +22,14 @@ namespace pcbmesh::extrude {
 ///
 /// Face tags: "zmin", "zmax", "xmin", "xmax", "ymin", "ymax" for faces on the sides of the bounding box of the meshed part,
 /// "side" for all other outer faces (walls elsewhere, and steps beside voids that are no conductors), "surface|net" for skins
-/// of hollow conductors ("surface|none" without a net). Only tags in use are listed, in this order; nets ascending.
+/// of hollow conductors ("surface|none" without a net), "sheet|net" for sheets between two prisms, "sheet|net|outer" for sheets
+/// on the hull, "port|name" and "waveport|name". Only tags in use are listed, in this order; nets ascending.
 ///
 /// @param net_pieces     per net of the model, or empty = not known; handed on to the mesh, as is `touching_nets`.
 /// @guarantee E1  every face between a prism and a void or the outside has exactly one tag
-/// @guarantee E2  a face tag is either outer or conductor, never both
+/// @guarantee E2  no face tag has faces between two prisms and faces of the boundary
+/// @guarantee E3  the faces of a lumped port are its rectangle, and its edges lie on its two conductors
+/// @throws Error port_invalid (306) naming every port that is otherwise
 /// @throws Error internal (901) if the plan or the planar mesh was made for another model.
 /// @cost O(triangles x slabs); memory O(triangles + regions x slabs + boundary faces of one sub-layer per slab).
 [[nodiscard]] mesh::PrismMesh extrude(const mesh::PlanarMesh& planar, const mesh::LayerPlan& plan, const model::Model& model,

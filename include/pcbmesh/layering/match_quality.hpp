@@ -68,8 +68,4 @@ struct MeasuredEdge {
 /// prisms. Front not empty.
 [[nodiscard]] std::size_t knee_of(std::span<const FrontPoint> front);
 
-/// Edges of the mesh without those of void cells alone: unknowns of edge elements of lowest order before boundary conditions.
-/// @cost O(planar edges x slabs).
-[[nodiscard]] std::int64_t num_edges(const mesh::PrismMesh& mesh);
-
 }  // namespace pcbmesh::layering

@@ -42,25 +42,25 @@ inline constexpr std::size_t num_hull_sides = 7;
 
 /// Where a port is: exactly one of pin, point and side is given.
 struct PortPlace {
-  std::string pin;                       ///< component pin, "J1.2"
-  std::optional<geometry::Point> point;  ///< place on the board
-  std::string layer;                     ///< copper layer of the net at that point; empty = found
-  std::optional<HullSide> side;          ///< where the region cuts the net: xmin, xmax, ymin or ymax
+  std::string pin{};                       ///< component pin, "J1.2"
+  std::optional<geometry::Point> point{};  ///< place on the board
+  std::string layer{};                     ///< copper layer of the net at that point; empty = found
+  std::optional<HullSide> side{};          ///< where the region cuts the net: xmin, xmax, ymin or ymax
   bool operator==(const PortPlace&) const = default;
 };
 
 /// A port from the reference net (negative terminal) to the net (positive terminal).
 struct Port {
-  std::string name;
+  std::string name{};
   PortKind kind = PortKind::lumped;
-  std::string net;        ///< positive terminal
-  std::string reference;  ///< negative terminal; empty = the plane found nearest
-  PortPlace at;
+  std::string net{};        ///< positive terminal
+  std::string reference{};  ///< negative terminal; empty = the plane found nearest
+  PortPlace at{};
   PortShape shape = PortShape::automatic;
   double impedance_ohm = 50;
   bool excited = true;
-  std::optional<Nm> width;   ///< extent along the conductor's cross-section; empty = the conductor's width
-  std::optional<Nm> height;  ///< wave: height above the reference; empty = up to the next reference or the end of the domain
+  std::optional<Nm> width{};   ///< extent along the conductor's cross-section; empty = the conductor's width
+  std::optional<Nm> height{};  ///< wave: height above the reference; empty = up to the next reference or the end of the domain
   bool operator==(const Port&) const = default;
 };
 
@@ -85,7 +85,7 @@ struct Sweep {
   double from_hz = 0;  ///< with an empty list: `points` frequencies, evenly spaced, both ends included
   double to_hz = 0;
   std::int64_t points = 0;
-  std::vector<double> list_hz;  ///< ascending; if not empty, these and no others
+  std::vector<double> list_hz{};  ///< ascending; if not empty, these and no others
   /// All frequencies, ascending.
   [[nodiscard]] std::vector<double> frequencies_hz() const;
   bool operator==(const Sweep&) const = default;

@@ -158,6 +158,19 @@ struct Study {
 /// The study as JSON, every default filled in; parse_study(to_json(s)) == s.
 [[nodiscard]] std::string to_json(const Study& study);
 
+/// Words that go into a study file and are not read.
+struct StudyWords {
+  std::string schema;                   ///< where the schema lies, for editors; empty = not said
+  std::string note;                     ///< empty = none
+  std::vector<std::string> port_notes;  ///< per port; missing or empty = none
+};
+[[nodiscard]] std::string to_json(const Study& study, const StudyWords& words);
+/// The ports alone, as a "ports" member ready to paste.
+[[nodiscard]] std::string ports_json(const Study& study, const StudyWords& words);
+
+/// docs/schema/study.schema.json, as this program was built with it.
+[[nodiscard]] std::string_view schema_text();
+
 /// One thing wrong with a study, by itself or on a board.
 struct Fault {
   std::string field;  ///< JSON pointer, "/ports/1/net"

@@ -31,6 +31,7 @@ struct TriangulateOptions {
   std::optional<Grading> grading{};
   Seed seed = Seed::delaunay;  ///< hexagonal excludes grading; the lattice's edge is longest_edge_nm * lattice_over_longest
   bool smooth = false;         ///< guarded smoothing of the vertices inside faces; angle and edge bounds still hold
+  bool split_sheet_chords = false;  ///< two elements at least across every sheet: Palace's rule
   std::int64_t max_vertices = 50'000'000;
   /// CGAL's stock mesher on millimetre doubles, as the paper's program had it: reproduces its triangle counts, which
   /// hang on rounding (a right angle is not quite right in binary millimetres). Slower, and unsafe for near-coincident edges.
@@ -44,6 +45,7 @@ struct TriangulateStatistics {
   std::int64_t num_input_vertices = 0;
   std::int64_t num_steiner = 0;
   double min_angle_deg = 0;                     ///< reached
+  std::int64_t num_chord_splits = 0;            ///< vertices added for split_sheet_chords
   std::int64_t num_below_bound = 0;             ///< triangles below the bound (forced by input angles)
   double cdt_s = 0, refine_s = 0, label_s = 0;  ///< process CPU seconds; seeding and smoothing count as refinement
 };
@@ -59,6 +61,7 @@ struct TriangulateResult {
 /// @guarantee T1  every graph edge is a union of mesh edges
 /// @guarantee T2  each triangle lies in exactly one face of the graph
 /// @guarantee T3  same input and options give the same bytes
+/// @guarantee T5  with split_sheet_chords no edge inside a sheet has both its ends on the sheet's rim
 /// @guarantee T4  refinement ends: vertices are capped, and forced small angles are reported, not chased
 /// @throws Error usage (101), planar_crossing_edges (403), triangulation_limit (404), cancelled (103).
 /// @cost about 1 us and 120 bytes at the peak per triangle, linear (benchmarks/triangulate_bench.cpp).

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -63,6 +64,9 @@ class Paint {
   [[nodiscard]] ColourMode mode() const { return mode_; }
   /// Before any light falls on it. @cost O(1); face_tag O(log boundary faces).
   [[nodiscard]] Rgb of(const SkinFace& face) const;
+  /// Colour of an inner tagged face: copper or its net's colour for sheets, a colour of their own for ports; none for what the
+  /// mode does not bring out.
+  [[nodiscard]] std::optional<Rgb> of_tag(std::int32_t face_tag) const;
   /// Colour of a volume group (continuous modes and face_tag: its material's).
   [[nodiscard]] Rgb of_group(std::int32_t group) const;
   /// Categorical modes: one entry per thing that is not hidden and has cells.

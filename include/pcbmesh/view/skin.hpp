@@ -60,6 +60,15 @@ using SkinVisitor = std::function<void(std::span<const SkinFace>)>;
 /// @cost O(triangles x slabs) byte comparisons, one pass over the planar edges.
 void visit_skin(const mesh::PrismMesh& mesh, const Visibility& visibility, const SkinVisitor& visit);
 
+/// A tagged face between two prisms: a sheet, a port, an interface.
+struct TaggedFace {
+  SkinFace face;         ///< of the prism below, or to the left of a wall's edge
+  std::int32_t tag = 0;  ///< index into face_tags
+};
+using TaggedFaceVisitor = std::function<void(const TaggedFace&)>;
+/// Calls `visit` with the faces of tags that are is_inner, where the prism on either side is shown; caps, then walls.
+void visit_inner_faces(const mesh::PrismMesh& mesh, const Visibility& visibility, const TaggedFaceVisitor& visit);
+
 /// Visible faces as a solver's file would count them: a wall counts once per sub-layer.
 struct SkinCount {
   std::int64_t num_triangles = 0, num_quads = 0;

@@ -117,11 +117,12 @@ def line_s(z0, gamma, length, ports_ohm):
     return r * (1 - e * e) / (1 - r * r * e * e), (1 - r * r) * e / (1 - r * r * e * e)
 
 
-def line_of_s(s11, s21, length, ports_ohm):
-    """(impedance, gamma) of a reciprocal symmetric line from its S-parameters; the line shorter than half a wave."""
-    cosh = (1 - s11 ** 2 + s21 ** 2) / (2 * s21)
-    z0 = ports_ohm * cmath.sqrt(((1 + s11) ** 2 - s21 ** 2) / ((1 - s11) ** 2 - s21 ** 2))
-    gamma = cmath.acosh(cosh) / length
-    if gamma.imag < 0:
-        gamma = -gamma
-    return (z0 if z0.real > 0 else -z0), gamma
+def gamma_of_two(s_short, s_long, difference):
+    """Propagation constant from two-port S of a short and a long line with the same ends: the eigenvalues of
+    T_long / T_short, whatever the ends are. The difference shorter than half a wave."""
+    def transfer(s):
+        det = s[0][0] * s[1][1] - s[0][1] * s[1][0]
+        return numpy.array([[-det, s[0][0]], [-s[1][1], 1]]) / s[1][0]
+    values = numpy.linalg.eigvals(transfer(s_long) @ numpy.linalg.inv(transfer(s_short)))
+    wave = min(values, key=lambda v: v.imag)
+    return -cmath.log(wave) / difference

@@ -26,6 +26,7 @@ class Page {
     this.make_quality();
     this.stage.set_thickness(this.thickness);
     this.refresh();
+    this.show_tags();
     this.stage.look_from(-35, 38);
     this.set_theme(document.documentElement.dataset.theme ?? (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light"), false);
   }
@@ -86,10 +87,29 @@ class Page {
     $("materials_count").textContent = this.materials.items.length;
 
     $("tags_count").textContent = tables.face_tags.length;
-    $("tags").append(table("Face tags: boundaries, conductor skins, ports", ["name", "id", "faces", "area, mm\u00b2"],
-      tables.face_tags.map((t) => [t.name, String(t.id), grouped(t.triangles + t.quads), short(t.area_m2 * 1e6)])));
-    $("tags").append(element("button", { type: "button", class: "link", onclick: () => this.set_mode("tag") }, "Colour faces by tag"));
+    // What lies inside shows at once; the hull only on request.
+    const port_colour = "#e02482";
+    this.tag_shown = tables.face_tags.map((t) => t.kind === "port" || t.kind === "wave_port" || t.kind === "sheet");
+    this.tag_colours = tables.face_tags.map((t) => (t.kind.endsWith("port") ? port_colour : t.kind === "sheet" ? "#cd7f3c" : t.colour));
+    const tag_list = new ToggleList($("tags"), tables.face_tags.map((t, i) => ({ name: t.name, colour: this.tag_colours[i], groups: [], index: i, note: grouped(t.triangles + t.quads) })), {
+      kind: "tag", searchable: true,
+      on_change: (item, shown) => {
+        this.tag_shown[item.index] = shown;
+        this.show_tags();
+        say(`Face tag ${item.name} ${shown ? "shown" : "no longer shown"}`);
+      },
+    });
+    tag_list.boxes.forEach((box, i) => (box.checked = this.tag_shown[i]));
+    $("tags").append(table("Face tags: boundaries, conductor skins, ports", ["name", "id", "kind", "condition", "area, mm\u00b2"],
+      tables.face_tags.map((t) => [t.name, String(t.id), t.kind, t.condition, short(t.area_m2 * 1e6)])));
+    $("tags").append(element("button", { type: "button", class: "link", onclick: () => this.set_mode("tag") }, "Colour all faces by tag"));
     $("tags").append(table("Volume groups", ["name", "id", "prisms", "volume, mm\u00b3"], tables.groups.map((g) => [g.name, String(g.id), grouped(g.prisms), short(g.volume_m3 * 1e9)])));
+  }
+
+  show_tags() {
+    const rgb = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));
+    this.stage.show_tags(this.tag_shown, this.tag_colours.map(rgb));
+    this.make_legend();
   }
 
   make_legend() {
@@ -116,6 +136,7 @@ class Page {
         else entries.set(g.name, g.colour);
       });
     }
+    if (this.mode !== "tag") tables.face_tags.forEach((t, i) => this.tag_shown[i] && entries.set(`tag ${t.name}`, this.tag_colours[i]));
     const most = 9;
     const list = element("ul", {});
     for (const [name, colour] of [...entries].slice(0, most)) {

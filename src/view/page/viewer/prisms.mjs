@@ -139,9 +139,11 @@ export class Prisms {
         if (w.slab[i] === slab && ((w.a[i] === a && w.b[i] === b) || (w.a[i] === b && w.b[i] === a))) return w.tag[i];
       return -1;
     }
-    const place = 2 * this.first_sublayer[slab + (kind === "up" ? 1 : 0)] + (kind === "up" ? 1 : 0);
+    // A hull face looks out of its cell; a face between two cells is listed as looking up.
+    const level = this.first_sublayer[slab + (kind === "up" ? 1 : 0)], inner = this.tables.face_tags;
     const c = this.caps;
-    for (let i = 0; i < c.tag.length; ++i) if (c.triangle[i] === t && c.place[i] === place) return c.tag[i];
+    for (let i = 0; i < c.tag.length; ++i)
+      if (c.triangle[i] === t && c.place[i] >> 1 === level && (inner[c.tag[i]].inner || (c.place[i] & 1) === (kind === "up" ? 1 : 0))) return c.tag[i];
     return -1;
   }
 

@@ -244,3 +244,42 @@ export function build_section(prisms, visibility, paint, centre, plane) {
   }
   return { position: new Float32Array(position), colour: new Uint8Array(colour), corner: new Uint8Array(corner) };
 }
+
+/// Faces of the wanted face tags, straight from the tables: hull, skins, sheets, ports alike.
+export function build_tagged(prisms, visibility, wanted, colours, centre) {
+  const { corners, x, y, slab_z, caps, walls, first_sublayer } = prisms;
+  const slab_above = new Map();
+  first_sublayer.forEach((k, s) => slab_above.set(k, s));
+  let count = 0;
+  for (let i = 0; i < caps.tag.length; ++i) if (wanted[caps.tag[i]]) count += 3;
+  for (let i = 0; i < walls.tag.length; ++i) if (wanted[walls.tag[i]]) count += 6;
+  const position = new Float32Array(3 * count), colour = new Uint8Array(4 * count), corner = new Uint8Array(4 * count);
+  let v = 0;
+  const put = (px, py, pz, c, light, e0, e1, e2, rank) => {
+    position.set([px - centre[0], py - centre[1], pz - centre[2]], 3 * v);
+    colour.set([c[0] * light, c[1] * light, c[2] * light, 255], 4 * v);
+    corner.set([e0, e1, e2, rank], 4 * v);
+    ++v;
+  };
+  for (let i = 0; i < caps.tag.length; ++i) {
+    if (!wanted[caps.tag[i]]) continue;
+    const t = caps.triangle[i], face = slab_above.get(caps.place[i] >> 1);
+    // The cell it belongs to: below where it faces up.
+    const slab = Math.max(0, Math.min(prisms.num_slabs - 1, caps.place[i] & 1 ? face - 1 : face));
+    const rank = Math.min(255, visibility.rank[slab]), c = colours[caps.tag[i]];
+    for (let k = 0; k < 3; ++k) put(x[corners[3 * t + k]], y[corners[3 * t + k]], slab_z[face], c, light_on(0, 0, 1), k === 0 ? 255 : 0, k === 1 ? 255 : 0, k === 2 ? 255 : 0, rank);
+  }
+  for (let i = 0; i < walls.tag.length; ++i) {
+    if (!wanted[walls.tag[i]]) continue;
+    const a = walls.a[i], b = walls.b[i], s = walls.slab[i], c = colours[walls.tag[i]], rank = Math.min(255, visibility.rank[s]);
+    const dx = x[b] - x[a], dy = y[b] - y[a], length = Math.hypot(dx, dy) || 1, light = light_on(dy / length, -dx / length, 0);
+    const low = slab_z[s], high = slab_z[s + 1];
+    put(x[a], y[a], low, c, light, 255, 255, 0, rank);
+    put(x[b], y[b], low, c, light, 0, 255, 0, rank);
+    put(x[b], y[b], high, c, light, 0, 255, 255, rank);
+    put(x[a], y[a], low, c, light, 255, 255, 0, rank);
+    put(x[b], y[b], high, c, light, 0, 255, 255, rank);
+    put(x[a], y[a], high, c, light, 0, 255, 0, rank);
+  }
+  return { position, colour, corner };
+}

@@ -7,7 +7,7 @@ import {
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { Cards } from "./cards.mjs";
-import { build, build_rim, build_section, Visibility } from "./skin.mjs";
+import { build, build_rim, build_section, build_tagged, Visibility } from "./skin.mjs";
 
 const idle_ms = 160;
 const slice_ms = 140;
@@ -95,6 +95,8 @@ export class Stage {
     const uncut = { ...shaders, uniforms: { ...this.uniforms, clip: { value: new Vector4(0, 0, 0, 1) } }, side: DoubleSide };
     this.cut_with_edges = new ShaderMaterial({ ...uncut, defines: { EDGES: 1 } });
     this.cut_plain = new ShaderMaterial(uncut);
+    // Tagged faces come before the faces they lie on.
+    this.tag_material = new ShaderMaterial({ ...shaders, defines: { EDGES: 1 }, side: DoubleSide, polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -4 });
     this.edges = true;
     this.scene = new Scene(); // the real faces
     this.moving = new Scene(); // cards
@@ -146,7 +148,7 @@ export class Stage {
     this.visibility = new Visibility(this.prisms, hidden, is_exploded);
     this.paint = paint;
     this.uniforms.middle.value = (this.visibility.num_ranks - 1) / 2;
-    this.stale = new Set(["cards", "rim", "faces", "section"]);
+    this.stale = new Set(["cards", "rim", "faces", "section", "tags"]);
     this.moved();
   }
 
@@ -184,6 +186,24 @@ export class Stage {
     if (!this.plane) return;
     this.cut = this.new_mesh(build_section(this.prisms, this.visibility, this.paint, this.centre, this.plane), this.edges ? this.cut_with_edges : this.cut_plain);
     this.always.add(this.cut);
+  }
+  /// Face tags drawn over everything else in their place. wanted: flag per tag; colours: [r, g, b] per tag.
+  show_tags(wanted, colours) {
+    this.wanted_tags = { wanted: [...wanted], colours };
+    this.stale.add("tags");
+    this.moved();
+  }
+  need_tags() {
+    if (!this.stale.has("tags") || !this.wanted_tags) return;
+    this.stale.delete("tags");
+    if (this.tagged) {
+      this.always.remove(this.tagged);
+      this.tagged.geometry.dispose();
+      this.tagged = null;
+    }
+    if (!this.wanted_tags.wanted.some(Boolean)) return;
+    this.tagged = this.new_mesh(build_tagged(this.prisms, this.visibility, this.wanted_tags.wanted, this.wanted_tags.colours, this.centre), this.tag_material);
+    this.always.add(this.tagged);
   }
   new_mesh({ position, colour, corner }, material) {
     const geometry = new BufferGeometry();
@@ -437,6 +457,7 @@ export class Stage {
     this.drawing = true;
     this.set_clip_distances();
     this.need_section();
+    this.need_tags();
     const generation = this.generation;
     if (this.stale.has("faces") && this.looks_small()) this.need_faces();
     const ranges = this.stale.has("faces") ? null : this.ranges_in_view();

@@ -1,0 +1,131 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Decks that run: native boards through pcbmesh to GetDP and back to numbers, judged by closed formulas. The short form of
+validation/cases/solvers."""
+import json
+import pathlib
+import re
+import sys
+import tempfile
+import unittest
+
+from program import ROOT, SKIPPED, run
+
+sys.path.insert(0, str(ROOT / "validation/cases/solvers"))
+try:
+    import cases
+    import exact
+    import solve
+except ImportError as missing:
+    print(f"skipped: {missing}; scripts/setup installs it")
+    sys.exit(SKIPPED)
+if not solve.has_getdp():
+    print("skipped: getdp is not installed; scripts/setup installs it")
+    sys.exit(SKIPPED)
+
+
+class Solvers(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.out = pathlib.Path(self.folder.name)
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def test_cavity_converges_to_the_closed_formula(self):
+        errors = []
+        for edge in (30, 15):
+            _, pairs = cases.cavity(self.out, edge)
+            errors.append([found / wanted - 1 for found, wanted in pairs])
+        self.assertEqual(len(errors[1]), 3)
+        self.assertTrue(all(0 < e < 0.01 for e in errors[1]), errors)
+        self.assertTrue(all(coarse / fine > 3 for coarse, fine in zip(*errors)), errors)
+
+    def test_tem_line_converges_with_the_square_of_the_edge(self):
+        errors = []
+        for edge in (10, 5, 2.5):
+            _, s, wanted = cases.tem_line(self.out, edge)
+            errors.append(abs(s[1][0] - wanted[1]))
+        self.assertGreater(errors[0] / errors[1], 3.4, errors)
+        self.assertGreater(errors[1] / errors[2], 3.6, errors)
+        self.assertLess(errors[2], 0.02, errors)
+
+    def test_changes_of_the_study_change_the_result_as_they_must(self):
+        """Loss tangent, port impedance, one boundary: each reaches the solver and does what the formula says."""
+        _, s, wanted = cases.tem_line(self.out, 2.5, hz=1e9)
+        self.assertLess(abs(s[1][0] - wanted[1]), 2e-3)
+        _, lossy, wanted = cases.tem_line(self.out, 2.5, hz=1e9, tan_delta=0.05)
+        self.assertLess(abs(lossy[1][0] - wanted[1]), 2e-3)
+        self.assertLess(abs(lossy[1][0]), 0.91)
+        _, mismatched, wanted = cases.tem_line(self.out, 2.5, hz=1e9, ohm_factor=2)
+        self.assertLess(abs(mismatched[0][0] - wanted[0]), 5e-3)
+        self.assertGreater(abs(mismatched[0][0]), 0.2)
+        # Electric side walls instead of magnetic ones: a waveguide far below its cut-off.
+        _, walled, _ = cases.tem_line(self.out, 5, hz=1e9, boundaries={"all": "none", "ymin": "pec", "ymax": "pec"})
+        self.assertLess(abs(walled[1][0]), 1e-3)
+
+    def test_capacitances(self):
+        for mode in ("solid", "hollow", "sheet"):
+            _, found, wanted = cases.plates(self.out, mode=mode)
+            self.assertAlmostEqual(found / wanted, 1, places=12, msg=mode)
+        solved, found, wanted = cases.coaxial_via(self.out)
+        self.assertLess(abs(found / wanted - 1), 0.01)
+        twin = solve.solve_twin(solved, "Capacitance").capacitance()["SIG", "SIG"]
+        self.assertLess(abs(twin / found - 1), 0.005, "prisms and their tetrahedral twin agree")
+
+    def test_via_transition_is_passive_and_reciprocal(self):
+        _, sweep = cases.via_transition(self.out, hz=(4e9,))
+        s = sweep[0][1]
+        self.assertLess(abs(s[0][1] - s[1][0]), 1e-6)
+        for column in range(2):
+            self.assertLessEqual(sum(abs(s[row][column]) ** 2 for row in range(2)), 1)
+
+    def test_what_a_solver_cannot_say_is_refused_before_a_mesh_is_written(self):
+        board = cases.board("b", [("top", 0.035), ("core", 0.5, 4.0, 0.0), ("bottom", 0.035)], cases.rect(0, 0, 10, 5), ["A", "GND"],
+                            planes=[{"layer": "top", "net": "A"}, {"layer": "bottom", "net": "GND"}])
+        file = self.out / "b.json"
+        file.write_text(json.dumps(board))
+        for arguments, words in ((["--for", "palace", "--problem", "electrostatic"], ["solid copper", "hollow"]),
+                                 (["--for", "getdp", "--boundary", "all=none"], ["port", "frequencies"]),
+                                 (["--for", "getdp", "--problem", "eigenmode", "--boundary", "all=absorbing"], ["absorbing", "driven"])):
+            done = run("mesh", file, "--air", "0", "-o", self.out / "x.msh", *arguments)
+            self.assertNotEqual(done.returncode, 0, arguments)
+            for word in words:
+                self.assertIn(word, done.stderr, arguments)
+            self.assertEqual([p.name for p in self.out.glob("x*")], [], arguments)
+
+    def test_palace_and_elmer_hold_everything_of_the_study(self):
+        board = cases.board("b", [("top", 0.035), ("core", 0.5, 4.1, 0.013), ("bottom", 0.035)], cases.rect(-2, -2, 12, 7), ["A", "GND"],
+                            tracks=[{"layer": "top", "net": "A", "width": 1, "points": [[-1, 2], [11, 2]]}], planes=[{"layer": "bottom", "net": "GND"}])
+        study = cases.study("driven", 2, ports=[cases.port("p1", "A", "xmin", 47), cases.port("p2", "A", "xmax", 53)], sweep=[1e9, 2e9], region=[0, 0, 10, 4],
+                            boundaries={"all": "absorbing", "ymin": "pec", "ymax": {"kind": "impedance", "ohms": 321}}, air=(1, 0), conductors={"mode": "hollow", "surface": "lossy"})
+        (self.out / "b.json").write_text(json.dumps(board))
+        (self.out / "s.json").write_text(json.dumps(study))
+        for solver in ("palace", "elmer"):
+            done = run("mesh", self.out / "b.json", "--study", self.out / "s.json", "--for", solver, "-o", self.out / solver)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        deck = json.loads((self.out / "palace/b.palace.json").read_text())
+        tags = {f["name"]: f["id"] for f in json.loads((self.out / "palace/b.tags.json").read_text())["faces"]}
+        import jsonschema
+        jsonschema.Draft7Validator(json.loads((ROOT / "tests/decks/palace.schema.json").read_text())).validate(deck)
+        boundaries = deck["Boundaries"]
+        self.assertEqual(deck["Model"]["L0"], 1.0)
+        self.assertFalse(deck["Model"]["RefineCrackElements"])
+        self.assertEqual(deck["Solver"]["Driven"]["Samples"], [{"Type": "Point", "Freq": [1.0, 2.0]}])
+        materials = {(m["Permittivity"], m["LossTan"]) for m in deck["Domains"]["Materials"]}
+        self.assertEqual(materials, {(4.1, 0.013), (1.0, 0.0)})
+        self.assertEqual([(p["R"], p["Excitation"], p["Attributes"]) for p in boundaries["LumpedPort"]], [(47, 1, [tags["port|p1"]]), (53, 2, [tags["port|p2"]])])
+        self.assertIn(tags["ymin"], boundaries["PEC"]["Attributes"])
+        self.assertEqual(boundaries["Impedance"], [{"Attributes": [tags["ymax"]], "Rs": 321}])
+        self.assertEqual({c["Conductivity"] for c in boundaries["Conductivity"]}, {5.8e7})
+        named = set(sum(([*b["Attributes"]] for key, group in boundaries.items() for b in (group if isinstance(group, list) else [group])), []))
+        self.assertEqual(named, set(tags.values()), "every face group has a condition")
+        sif = (self.out / "elmer/b.port1.sif").read_text()
+        for word in ("Good Conductor BC", "Absorbing BC", "Electric Robin Coefficient im", "Magnetic Boundary Load 3 im", "E re {e}"):
+            self.assertIn(word, sif)
+        self.assertAlmostEqual(float(re.search(r"Relative Permittivity im = Real (\S+)", sif).group(1)), 4.1 * 0.013, places=12, msg="loss is positive here")
+        self.assertEqual(sif.count("Boundary Condition "), len(tags))
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=1)
