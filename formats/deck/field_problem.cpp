@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -137,6 +138,32 @@ void note_assumptions(const FieldProblem& problem, Diagnostics& diagnostics) {
   if (!open.empty()) diagnostics.note("deck.magnetic_wall", "no field crosses these sides, they are magnetic walls: " + open);
 }
 
+/// A wall that absorbs goes on carrying the wave beside a lumped port on it: a matched load in parallel to the port.
+void warn_of_loaded_ports(const mesh::PrismMesh& mesh, const FieldProblem& problem, Diagnostics& diagnostics) {
+  if (problem.options.problem != Problem::driven || mesh.planar().points_m().empty()) return;
+  std::array<double, 2> min = mesh.planar().points_m().front(), max = min;
+  for (const auto& point : mesh.planar().points_m())
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      min[axis] = std::min(min[axis], point[axis]);
+      max[axis] = std::max(max[axis], point[axis]);
+    }
+  constexpr double on_side_m = 1e-9;
+  constexpr std::array<std::array<const char*, 2>, 2> sides{{{"xmin", "xmax"}, {"ymin", "ymax"}}};
+  for (const Face& face : problem.faces) {
+    if (face.kind != FaceTagKind::outer || face.condition != BoundaryCondition::absorbing) continue;
+    for (const FieldPort& port : problem.ports)
+      for (std::size_t axis = 0; axis < 2; ++axis)
+        for (const bool far : {false, true})
+          if (face.name == sides[axis][far ? 1 : 0] && port.port.kind == mesh::PortKind::lumped &&
+              std::abs(port.port.at_m[axis] - (far ? max : min)[axis]) < on_side_m)
+            diagnostics.warn(
+                "deck.loaded_port",
+                fmt::format("lumped port '{}' lies on side {}, which absorbs: the side loads the port like a second "
+                            "termination; make it none (--boundary {}=none)",
+                            port.port.name, face.name, face.name));
+  }
+}
+
 /// Everything that makes the problem ill posed, one sentence each.
 std::vector<std::string> flaws(const FieldProblem& problem) {
   std::vector<std::string> out;
@@ -206,6 +233,7 @@ FieldProblem state(const mesh::PrismMesh& mesh, const DeckOptions& options, std:
     throw Error(ErrorCode::study_invalid,
                 fmt::format("no deck for a {} problem: {}", study::name_of(options.problem), fmt::join(found, "; ")));
   note_assumptions(problem, diagnostics);
+  warn_of_loaded_ports(mesh, problem, diagnostics);
   return problem;
 }
 

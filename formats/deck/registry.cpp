@@ -27,6 +27,10 @@ std::span<const DeckFormat* const> deck_formats() {
   return deck_table;
 }
 
+bool has_deck(std::string_view solver) {
+  return std::ranges::any_of(deck_table, [&](const DeckFormat* format) { return format->name == solver; });
+}
+
 const DeckFormat& find_deck_format(std::string_view name) {
   const auto found = std::ranges::find(deck_table, name, [](const DeckFormat* format) { return format->name; });
   if (found != deck_table.end()) return **found;

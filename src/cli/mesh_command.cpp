@@ -54,7 +54,8 @@ pipeline::OutputOptions output_options(const Options& options, LengthUnit unit) 
   write.num_parts = options.num_parts;
   write.index_bits = options.index_bits;
   write.num_threads = options.threads;
-  return {{options.outputs.begin(), options.outputs.end()}, options.to, write, !options.no_check, options.threads, options.board};
+  return {
+      {options.outputs.begin(), options.outputs.end()}, options.to, write, !options.no_check, options.threads, options.board};
 }
 
 int run(const Options& options) {
@@ -94,7 +95,7 @@ int run(const Options& options) {
     }
     const std::filesystem::path summary = pipeline::file_beside(output.meshes.front(), ".report.json");
     mesh_run.files = written.files;
-    if (result.resolved.solver != study::Solver::none) {
+    if (writes_deck(result.resolved)) {
       Diagnostics assumed;
       deck = write_solver_deck(result, output.meshes.front(), assumed);
       if (!options.quiet) print_diagnostics(assumed);

@@ -37,8 +37,12 @@ bool is_on_path(const std::string& program) {
 
 }  // namespace
 
+bool writes_deck(const study::Study& study) {
+  return study.solver != study::Solver::none && formats::has_deck(study::name_of(study.solver));
+}
+
 void prepare_for_solver(const study::Study& study, const std::string& board, pipeline::OutputOptions& output) {
-  if (study.solver == study::Solver::none || output.meshes.empty()) return;
+  if (!writes_deck(study) || output.meshes.empty()) return;
   const formats::DeckFormat& solver = formats::find_deck_format(study::name_of(study.solver));
   if (!output.write.version.empty() && output.write.version != solver.mesh.version)
     throw Error(ErrorCode::usage, fmt::format("{} reads version {} of its mesh, not {}; leave --msh-version out", solver.name,
@@ -59,7 +63,7 @@ void prepare_for_solver(const study::Study& study, const std::string& board, pip
 }
 
 void require_solver_deck(const pipeline::MeshBoardResult& result, const std::filesystem::path& mesh_file) {
-  if (result.resolved.solver == study::Solver::none) return;
+  if (!writes_deck(result.resolved)) return;
   formats::require_deck(result.mesh, study::name_of(result.resolved.solver),
                         formats::deck_options(result.resolved, mesh_file.filename().string()));
 }

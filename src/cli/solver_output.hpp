@@ -13,6 +13,9 @@
 
 namespace pcbmesh::cli {
 
+/// Whether the study names a solver whose deck is written; for the others there is the mesh alone.
+[[nodiscard]] bool writes_deck(const study::Study& study);
+
 /// Turns the outputs of a run for a solver into what its deck wants: a folder gets a mesh file named after the board, format,
 /// version and numbering are the solver's. Folders that are named but absent are made. Does nothing without a solver.
 /// @throws Error usage (101) when the user asks for another format or version than the solver reads.

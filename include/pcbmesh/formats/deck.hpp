@@ -55,6 +55,7 @@ struct DeckFormat {
 };
 
 [[nodiscard]] std::span<const DeckFormat* const> deck_formats();
+[[nodiscard]] bool has_deck(std::string_view solver);
 /// @throws Error usage (101) listing the solvers.
 [[nodiscard]] const DeckFormat& find_deck_format(std::string_view name);
 

@@ -152,6 +152,6 @@ def via_transition(folder, edge_mm=0.6, at_copper_mm=0.25, hz=(2e9, 6e9), tan_de
                  + [{"at": [x, y], "drill": 0.3, "pad": 0.6, "net": "GND", "layers": ["gnd1", "gnd2"]} for x, y in ((0, 1.2), (0, -1.2))],
                  planes=[{"layer": "gnd1", "net": "GND"}, {"layer": "gnd2", "net": "GND"}])
     ports = [port("p1", "LINE", "xmin", ports_ohm[0]), port("p2", "LINE", "xmax", ports_ohm[1])]
-    solved = solve(made, study("driven", edge_mm, ports=ports, sweep=hz, region=[-3, -2, 3, 2], air=(1, 1), seed="delaunay", boundaries={"all": "absorbing"},
+    solved = solve(made, study("driven", edge_mm, ports=ports, sweep=hz, region=[-3, -2, 3, 2], air=(1, 1), seed="delaunay", boundaries={"all": "absorbing", "xmin": "none", "xmax": "none"},
                                conductors={"mode": "hollow", "surface": "lossy"}, mesh={"edge_at_copper": at_copper_mm, "growth": 0.6, "height_policy": "none", "sublayers": "none"}), folder)
     return solved, solved.touchstone()
