@@ -8,6 +8,8 @@
 #include "formats/sink/file_sink.hpp"
 #include "formats/tags_json/tags_json.hpp"
 #include "pcbmesh/base/error.hpp"
+#include "pcbmesh/mesh/mesh_data_source.hpp"
+#include "pcbmesh/mesh/prism_source.hpp"
 
 namespace pcbmesh::pipeline {
 namespace {
@@ -22,7 +24,8 @@ validation::Report judge(const MeshBoardResult& result, const OutputOptions& opt
   }
   progress.at("check", 0);
   expectation.unit_m = 1.0;
-  return validation::check(expand(result.mesh), &expectation, {options.num_threads});
+  mesh::PrismSource source(result.mesh);
+  return validation::check(mesh::expand(source), &expectation, {options.num_threads});
 }
 
 }  // namespace
@@ -79,48 +82,6 @@ OutputResult write_outputs(const MeshBoardResult& result, const OutputOptions& o
   out.files.push_back(tags.string());
   out.files.push_back(study.string());
   if (options.check) out.report = judge(result, options, tags, progress);
-  return out;
-}
-
-mesh::MeshData expand(const mesh::PrismMesh& mesh) {
-  mesh::MeshData out;
-  out.source = "mesh in memory";
-  out.num_other_elements = {0, 0};
-  out.nodes.resize(static_cast<std::size_t>(mesh.num_nodes()));
-  mesh.fill_nodes(0, out.nodes);
-
-  const auto num_prisms = static_cast<std::size_t>(mesh.num_prisms());
-  mesh::CellBlock wedges;
-  wedges.corners.reserve(num_prisms * 6);
-  wedges.tags.reserve(num_prisms);
-  std::vector<std::array<std::int64_t, 6>> corners(1 << 16);
-  std::vector<std::int32_t> tags(corners.size());
-  for (std::size_t first = 0; first < num_prisms; first += corners.size()) {
-    const std::size_t count = std::min(corners.size(), num_prisms - first);
-    mesh.fill_prisms(static_cast<std::int64_t>(first), std::span(corners).first(count), std::span(tags).first(count));
-    for (std::size_t i = 0; i < count; ++i) {
-      wedges.corners.insert(wedges.corners.end(), corners[i].begin(), corners[i].end());
-      wedges.tags.push_back(mesh.volume_tags()[static_cast<std::size_t>(tags[i])].id);
-    }
-  }
-  out.cells.push_back(std::move(wedges));
-
-  mesh::FaceBlock triangles{mesh::FaceKind::triangle, {}, {}}, quads{mesh::FaceKind::quadrangle, {}, {}};
-  for (const mesh::Cap& cap : mesh.caps()) {
-    std::array<std::int32_t, 3> t = mesh.planar().triangles()[static_cast<std::size_t>(cap.triangle)];
-    if (!cap.up) std::swap(t[1], t[2]);
-    for (std::int32_t v : t) triangles.corners.push_back(mesh.node_id(cap.level, v));
-    triangles.tags.push_back(mesh.face_tags()[static_cast<std::size_t>(cap.tag)].id);
-  }
-  for (const mesh::Wall& wall : mesh.walls())
-    for (std::int32_t k = mesh.plan().first_sublayer(wall.slab); k < mesh.plan().first_sublayer(wall.slab + 1); ++k) {
-      for (const auto& [level, v] : {std::pair{k, wall.a}, {k, wall.b}, {k + 1, wall.b}, {k + 1, wall.a}})
-        quads.corners.push_back(mesh.node_id(level, v));
-      quads.tags.push_back(mesh.face_tags()[static_cast<std::size_t>(wall.tag)].id);
-    }
-  out.faces = {std::move(triangles), std::move(quads)};
-  for (const mesh::VolumeTag& tag : mesh.volume_tags()) out.names.push_back({3, tag.id, tag.name});
-  for (const mesh::FaceTag& tag : mesh.face_tags()) out.names.push_back({2, tag.id, tag.name});
   return out;
 }
 

@@ -43,7 +43,4 @@ void require_writable(const OutputOptions& options, const std::filesystem::path&
 /// Writes a small text file, whole or not at all. @throws Error write_failed (701).
 void write_text_file(const std::filesystem::path& file, std::string_view text);
 
-/// Every node, prism and boundary face written out: O(prisms) memory. For judging and converting, not for writing.
-[[nodiscard]] mesh::MeshData expand(const mesh::PrismMesh& mesh);
-
 }  // namespace pcbmesh::pipeline

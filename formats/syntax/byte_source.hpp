@@ -11,7 +11,7 @@
 
 #include "pcbmesh/base/error.hpp"
 
-namespace pcbmesh::formats::msh {
+namespace pcbmesh::formats::syntax {
 
 /// A file that is read once from front to back through a small window, as bytes, words or lines.
 /// Packed files (.gz, .xz) are unpacked in memory first.
@@ -90,4 +90,4 @@ class Numbers {
   bool binary_;
 };
 
-}  // namespace pcbmesh::formats::msh
+}  // namespace pcbmesh::formats::syntax
