@@ -22,6 +22,11 @@ Json net_or_null(const mesh::PrismMesh& mesh, std::int32_t net) {
   return net < 0 ? Json(nullptr) : Json(mesh.nets()[static_cast<std::size_t>(net)]);
 }
 
+template <class NameOf>
+Json entry_or_null(std::int32_t index, NameOf name_of) {
+  return index < 0 ? Json(nullptr) : Json(name_of(static_cast<std::size_t>(index)));
+}
+
 template <class Tags>
 std::vector<std::string> names_of(const Tags& tags) {
   std::vector<std::string> names;
@@ -64,21 +69,20 @@ Json faces(const mesh::PrismMesh& mesh) {
   const std::vector<std::string> names = names_of(mesh.face_tags());
   for (std::size_t i = 0; i < names.size(); ++i) {
     const mesh::FaceTag& tag = mesh.face_tags()[i];
-    Json face{{"id", tag.id},
-              {"dimension", 2},
-              {"name", names[i]},
-              {"kind", mesh::name_of(tag.kind)},
-              {"inner", tag.is_inner},
-              {"net", net_or_null(mesh, tag.net)},
-              {"condition", mesh::name_of(tag.condition)},
-              {"num_faces", tag.num_triangles + tag.num_quads},
-              {"area_m2", tag.area_m2}};
-    if (tag.condition == mesh::BoundaryCondition::impedance) face["impedance_ohm"] = tag.impedance_ohm;
-    if (tag.material >= 0) face["material"] = mesh.materials()[static_cast<std::size_t>(tag.material)].name;
-    if (tag.thickness_m > 0) face["thickness_m"] = tag.thickness_m;
-    if (tag.port >= 0) face["port"] = mesh.ports()[static_cast<std::size_t>(tag.port)].name;
-    if (tag.partner >= 0) face["partner"] = names[static_cast<std::size_t>(tag.partner)];
-    out.push_back(std::move(face));
+    out.push_back({{"id", tag.id},
+                   {"dimension", 2},
+                   {"name", names[i]},
+                   {"kind", mesh::name_of(tag.kind)},
+                   {"inner", tag.is_inner},
+                   {"net", net_or_null(mesh, tag.net)},
+                   {"condition", mesh::name_of(tag.condition)},
+                   {"impedance_ohm", tag.impedance_ohm > 0 ? Json(tag.impedance_ohm) : Json(nullptr)},
+                   {"material", entry_or_null(tag.material, [&](std::size_t m) { return mesh.materials()[m].name; })},
+                   {"thickness_m", tag.thickness_m > 0 ? Json(tag.thickness_m) : Json(nullptr)},
+                   {"port", entry_or_null(tag.port, [&](std::size_t p) { return mesh.ports()[p].name; })},
+                   {"partner", entry_or_null(tag.partner, [&](std::size_t f) { return names[f]; })},
+                   {"num_faces", tag.num_triangles + tag.num_quads},
+                   {"area_m2", tag.area_m2}});
   }
   return out;
 }

@@ -4,24 +4,10 @@
 #include <fmt/format.h>
 
 #include "pcbmesh/base/error.hpp"
+#include "src/cli/physics_options.hpp"
 
 namespace pcbmesh::cli {
 namespace {
-
-/// Splits at commas; a backslash keeps the next character, for names with commas.
-std::vector<std::string> split(const std::string& text) {
-  std::vector<std::string> parts(1);
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] == '\\' && i + 1 < text.size())
-      parts.back() += text[++i];
-    else if (text[i] == ',')
-      parts.emplace_back();
-    else
-      parts.back() += text[i];
-  }
-  std::erase(parts, "");
-  return parts;
-}
 
 /// "NET", "NET@LAYER" or "@LAYER".
 study::ConductorRule conductor_rule(const std::string& text, study::ConductorMode mode) {
@@ -31,7 +17,7 @@ study::ConductorRule conductor_rule(const std::string& text, study::ConductorMod
 }
 
 geometry::Box parse_box(const std::string& text) {
-  const std::vector<std::string> parts = split(text);
+  const std::vector<std::string> parts = split_at_commas(text);
   if (parts.size() != 4)
     throw Error(ErrorCode::usage,
                 fmt::format("--region '{}': expected four lengths xmin,ymin,xmax,ymax, e.g. 10mm,5mm,30mm,20mm", text));
@@ -53,7 +39,9 @@ std::shared_ptr<StudyOptions> add_study_options(CLI::App& command) {
   command.add_option("--margin", o->margin, "Growth of the nets' bounding box (default 2mm)")->group(region);
   command.add_option("--region", o->region, "Mesh a box: xmin,ymin,xmax,ymax; y is up, as inspect prints it")->group(region);
   constexpr const char* domain = "Conductors and air";
-  command.add_option("--conductors", o->conductors, "solid (copper is meshed) or hollow (its skin is tagged surface|net)")
+  command
+      .add_option("--conductors", o->conductors,
+                  "solid (copper is meshed), hollow (its skin is tagged surface|net) or sheet (no thickness, tagged sheet|net)")
       ->group(domain);
   command.add_option("--hollow", o->hollow, "Make NET, NET@LAYER or @LAYER hollow; repeatable")
       ->allow_extra_args(false)
@@ -61,10 +49,14 @@ std::shared_ptr<StudyOptions> add_study_options(CLI::App& command) {
   command.add_option("--solid", o->solid, "Make NET, NET@LAYER or @LAYER solid; repeatable")
       ->allow_extra_args(false)
       ->group(domain);
+  command.add_option("--sheet", o->sheet, "Make NET, NET@LAYER or @LAYER a sheet; repeatable")
+      ->allow_extra_args(false)
+      ->group(domain);
   command.add_option("--air", o->air, "Air above and below (default 1mm; 0 = none)")->group(domain);
   command.add_option("--air-above", o->air_above, "Air above the board")->group(domain);
   command.add_option("--air-below", o->air_below, "Air below the board")->group(domain);
   command.add_option("--air-around", o->air_around, "Air beside the whole board (default 0)")->group(domain);
+  add_physics_options(command, *o);
   constexpr const char* sizes = "Sizes and heights";
   command
       .add_option("--frequency", o->frequency, "Highest frequency, e.g. 10GHz: edges at most a third of the local wavelength")
@@ -94,7 +86,7 @@ study::Study study_from(const StudyOptions& o) {
   if (!o.nets.empty() && !o.region.empty()) throw Error(ErrorCode::usage, "--nets and --region exclude each other; give one");
   if (!o.nets.empty()) {
     s.region = study::RegionKind::nets;
-    s.nets = split(o.nets);
+    s.nets = split_at_commas(o.nets);
   }
   if (!o.margin.empty()) s.margin = parse_length(o.margin);
   if (!o.region.empty()) {
@@ -104,6 +96,7 @@ study::Study study_from(const StudyOptions& o) {
   if (!o.conductors.empty()) s.conductors = study::parse_conductor_mode(o.conductors);
   for (const std::string& text : o.hollow) s.conductor_rules.push_back(conductor_rule(text, study::ConductorMode::hollow));
   for (const std::string& text : o.solid) s.conductor_rules.push_back(conductor_rule(text, study::ConductorMode::solid));
+  for (const std::string& text : o.sheet) s.conductor_rules.push_back(conductor_rule(text, study::ConductorMode::sheet));
   if (!o.air.empty()) s.air_above = s.air_below = parse_length(o.air);
   if (!o.air_above.empty()) s.air_above = parse_length(o.air_above);
   if (!o.air_below.empty()) s.air_below = parse_length(o.air_below);
@@ -128,6 +121,7 @@ study::Study study_from(const StudyOptions& o) {
       throw Error(ErrorCode::usage, fmt::format("--max-prisms {} is no count", o.max_prisms));
     s.max_prisms = static_cast<std::int64_t>(o.max_prisms);
   }
+  take_physics_options(o, s);
   study::check(s);
   return s;
 }

@@ -24,8 +24,10 @@ struct Choice {
 
 inline constexpr std::array<Choice<RegionKind>, 3> region_names{
     {{RegionKind::whole, "whole"}, {RegionKind::nets, "nets"}, {RegionKind::box, "box"}}};
-inline constexpr std::array<Choice<ConductorMode>, 2> conductor_names{
-    {{ConductorMode::solid, "solid"}, {ConductorMode::hollow, "hollow"}}};
+inline constexpr std::array<Choice<ConductorMode>, 3> conductor_names{
+    {{ConductorMode::solid, "solid"}, {ConductorMode::hollow, "hollow"}, {ConductorMode::sheet, "sheet"}}};
+inline constexpr std::array<Choice<ConductorSurface>, 2> surface_names{
+    {{ConductorSurface::lossy, "lossy"}, {ConductorSurface::pec, "pec"}}};
 /// In the order of the paper's case numbers: none, then cases 1 to 5.
 inline constexpr std::array<Choice<HeightPolicy>, 6> policy_names{{{HeightPolicy::none, "none"},
                                                                    {HeightPolicy::basic, "basic"},
@@ -45,6 +47,33 @@ inline constexpr std::array<Choice<geometry::ArcMode>, 4> arc_names{{{geometry::
                                                                      {geometry::ArcMode::circumscribed, "circumscribed"},
                                                                      {geometry::ArcMode::equal_area, "equal_area"},
                                                                      {geometry::ArcMode::octagon, "octagon"}}};
+
+inline constexpr std::array<Choice<Problem>, 3> problem_names{
+    {{Problem::driven, "driven"}, {Problem::eigenmode, "eigenmode"}, {Problem::electrostatic, "electrostatic"}}};
+inline constexpr std::array<Choice<Solver>, 6> solver_names{{{Solver::none, "none"},
+                                                             {Solver::palace, "palace"},
+                                                             {Solver::getdp, "getdp"},
+                                                             {Solver::elmer, "elmer"},
+                                                             {Solver::dolfinx, "dolfinx"},
+                                                             {Solver::mfem, "mfem"}}};
+inline constexpr std::array<Choice<PortKind>, 2> port_kind_names{{{PortKind::lumped, "lumped"}, {PortKind::wave, "wave"}}};
+inline constexpr std::array<Choice<PortShape>, 4> port_shape_names{{{PortShape::automatic, "auto"},
+                                                                    {PortShape::vertical, "vertical"},
+                                                                    {PortShape::gap, "gap"},
+                                                                    {PortShape::coaxial, "coaxial"}}};
+inline constexpr std::array<Choice<HullSide>, num_hull_sides> hull_side_names{{{HullSide::xmin, "xmin"},
+                                                                               {HullSide::xmax, "xmax"},
+                                                                               {HullSide::ymin, "ymin"},
+                                                                               {HullSide::ymax, "ymax"},
+                                                                               {HullSide::zmin, "zmin"},
+                                                                               {HullSide::zmax, "zmax"},
+                                                                               {HullSide::side, "side"}}};
+inline constexpr std::array<Choice<BoundaryKind>, 6> boundary_names{{{BoundaryKind::none, "none"},
+                                                                     {BoundaryKind::absorbing, "absorbing"},
+                                                                     {BoundaryKind::pec, "pec"},
+                                                                     {BoundaryKind::pmc, "pmc"},
+                                                                     {BoundaryKind::impedance, "impedance"},
+                                                                     {BoundaryKind::periodic, "periodic"}}};
 
 template <typename Value, std::size_t N>
 [[nodiscard]] std::string_view name_in(const std::array<Choice<Value>, N>& choices, Value value) {

@@ -8,58 +8,48 @@
 
 #include "pcbmesh/base/error.hpp"
 #include "src/study/choices.hpp"
+#include "src/study/faults.hpp"
 
 namespace pcbmesh::study {
 namespace {
 
-[[noreturn]] void refuse(std::string_view field, std::string_view text) {
-  throw Error(ErrorCode::study_invalid, fmt::format("{}: {}", field, text));
-}
-
-void require_length(std::string_view field, Nm value, Nm least, Nm most) {
-  if (value < least || value > most)
-    refuse(field, fmt::format("{} is out of range; expected {} to {}", format_length(value), format_length(least),
-                              format_length(most)));
-}
-
-void check_region(const Study& study) {
+void check_region(const Study& study, FaultList& faults) {
   if (study.region == RegionKind::nets && study.nets.empty())
-    refuse("/region/nets", "a region by nets needs at least one net name");
+    faults.add("/region/nets", "a region by nets needs at least one net name");
   for (const std::string& net : study.nets)
-    if (net.empty()) refuse("/region/nets", "a net name is empty");
+    if (net.empty()) faults.add("/region/nets", "a net name is empty");
   for (std::size_t i = 0; i < study.nets.size(); ++i)
     if (std::find(study.nets.begin(), study.nets.begin() + static_cast<std::ptrdiff_t>(i), study.nets[i]) !=
         study.nets.begin() + static_cast<std::ptrdiff_t>(i))
-      refuse("/region/nets", fmt::format("net '{}' is named twice", study.nets[i]));
-  require_length("/region/margin", study.margin, 0, max_coordinate_nm);
-  if (study.region == RegionKind::box && !study.box) refuse("/region/box", "a region by box needs the box");
+      faults.add("/region/nets", fmt::format("net '{}' is named twice", study.nets[i]));
+  faults.require_length("/region/margin", study.margin, 0, max_coordinate_nm);
+  if (study.region == RegionKind::box && !study.box) faults.add("/region/box", "a region by box needs the box");
   if (!study.box) return;
   const geometry::Box& box = *study.box;
   if (box.max.x <= box.min.x || box.max.y <= box.min.y)
-    refuse("/region/box", "the box is empty: max must lie above and to the right of min");
+    faults.add("/region/box", "the box is empty: max must lie above and to the right of min");
   for (Nm value : {box.min.x, box.min.y, box.max.x, box.max.y})
-    require_length("/region/box", value, -max_coordinate_nm, max_coordinate_nm);
+    faults.require_length("/region/box", value, -max_coordinate_nm, max_coordinate_nm);
 }
 
-void check_mesh(const Study& study) {
-  constexpr double highest_hz = 1e13;
-  if (study.frequency_hz && !(*study.frequency_hz > 0 && *study.frequency_hz <= highest_hz))
-    refuse("/mesh/frequency", fmt::format("{} Hz is out of range; expected above 0 and up to 10 THz", *study.frequency_hz));
-  if (study.longest_edge) require_length("/mesh/longest_edge", *study.longest_edge, 1, max_coordinate_nm);
-  if (study.edge_at_copper) require_length("/mesh/edge_at_copper", *study.edge_at_copper, 1, max_coordinate_nm);
+void check_mesh(const Study& study, FaultList& faults) {
+  if (study.frequency_hz && !is_frequency(*study.frequency_hz))
+    faults.add("/mesh/frequency", fmt::format("{} Hz is out of range; expected above 0 and up to 10 THz", *study.frequency_hz));
+  if (study.longest_edge) faults.require_length("/mesh/longest_edge", *study.longest_edge, 1, max_coordinate_nm);
+  if (study.edge_at_copper) faults.require_length("/mesh/edge_at_copper", *study.edge_at_copper, 1, max_coordinate_nm);
   if (study.edge_at_copper && study.longest_edge && *study.edge_at_copper > *study.longest_edge)
-    refuse("/mesh/edge_at_copper", fmt::format("{} is longer than the longest edge, {}", format_length(*study.edge_at_copper),
-                                               format_length(*study.longest_edge)));
+    faults.add("/mesh/edge_at_copper", fmt::format("{} is longer than the longest edge, {}",
+                                                   format_length(*study.edge_at_copper), format_length(*study.longest_edge)));
   if (!(study.min_angle_deg > 0 && study.min_angle_deg <= 28.6))
-    refuse("/mesh/min_angle_deg",
-           fmt::format("{} is out of range; expected above 0 and up to 28.6 degrees (refinement is sure to end up to 20.7)",
-                       study.min_angle_deg));
+    faults.add("/mesh/min_angle_deg",
+               fmt::format("{} is out of range; expected above 0 and up to 28.6 degrees (refinement is sure to end up to 20.7)",
+                           study.min_angle_deg));
   if (!(study.growth > 0 && study.growth <= 10))
-    refuse("/mesh/growth", fmt::format("{} is out of range; expected above 0 and up to 10", study.growth));
+    faults.add("/mesh/growth", fmt::format("{} is out of range; expected above 0 and up to 10", study.growth));
   if (study.edge_at_copper && study.seed == TriangleSeed::hex)
-    refuse("/mesh/seed",
-           "the hexagonal lattice has edges of one length, but edge_at_copper asks for graded ones; leave one out");
-  if (study.tolerance) require_length("/mesh/tolerance", *study.tolerance, 1, nm_per_mm);
+    faults.add("/mesh/seed",
+               "the hexagonal lattice has edges of one length, but edge_at_copper asks for graded ones; leave one out");
+  if (study.tolerance) faults.require_length("/mesh/tolerance", *study.tolerance, 1, nm_per_mm);
 }
 
 }  // namespace
@@ -69,6 +59,9 @@ std::string_view name_of(RegionKind value) {
 }
 std::string_view name_of(ConductorMode value) {
   return name_in(conductor_names, value);
+}
+std::string_view name_of(ConductorSurface value) {
+  return name_in(surface_names, value);
 }
 std::string_view name_of(HeightPolicy value) {
   return name_in(policy_names, value);
@@ -105,18 +98,39 @@ bool Study::operator==(const Study& other) const {
          edge_at_copper == other.edge_at_copper && growth == other.growth && seed == other.seed && smooth == other.smooth &&
          policy == other.policy && sublayers == other.sublayers && tolerance == other.tolerance &&
          arcs.sagitta_nm == other.arcs.sagitta_nm && arcs.mode == other.arcs.mode && unit == other.unit &&
-         max_prisms == other.max_prisms;
+         max_prisms == other.max_prisms && conductor_surface == other.conductor_surface && problem == other.problem &&
+         solver == other.solver && ports == other.ports && boundaries == other.boundaries && sweep == other.sweep &&
+         modes == other.modes;
+}
+
+std::optional<double> highest_frequency_hz(const Study& study) {
+  if (study.frequency_hz || !study.sweep) return study.frequency_hz;
+  return study.sweep->list_hz.empty() ? study.sweep->to_hz : study.sweep->list_hz.back();
+}
+
+std::vector<Fault> faults_of(const Study& study) {
+  FaultList faults;
+  check_region(study, faults);
+  faults.require_length("/air/above", study.air_above, 0, max_coordinate_nm);
+  faults.require_length("/air/below", study.air_below, 0, max_coordinate_nm);
+  faults.require_length("/air/around", study.air_around, 0, max_coordinate_nm);
+  check_mesh(study, faults);
+  faults.require_length("/arcs/sagitta", study.arcs.sagitta_nm, 1, nm_per_mm);
+  if (study.max_prisms < 1)
+    faults.add("/limits/max_prisms", fmt::format("{} is out of range; expected at least 1", study.max_prisms));
+  check_physics(study, faults);
+  return faults.take();
+}
+
+std::string text_of(const std::vector<Fault>& faults) {
+  std::string text;
+  for (const Fault& fault : faults) text += fmt::format("{}{}: {}", text.empty() ? "" : "\n  ", fault.field, fault.text);
+  return text;
 }
 
 void check(const Study& study) {
-  check_region(study);
-  require_length("/air/above", study.air_above, 0, max_coordinate_nm);
-  require_length("/air/below", study.air_below, 0, max_coordinate_nm);
-  require_length("/air/around", study.air_around, 0, max_coordinate_nm);
-  check_mesh(study);
-  require_length("/arcs/sagitta", study.arcs.sagitta_nm, 1, nm_per_mm);
-  if (study.max_prisms < 1)
-    refuse("/limits/max_prisms", fmt::format("{} is out of range; expected at least 1", study.max_prisms));
+  if (const std::vector<Fault> faults = faults_of(study); !faults.empty())
+    throw Error(ErrorCode::study_invalid, text_of(faults));
 }
 
 }  // namespace pcbmesh::study

@@ -6,50 +6,14 @@
 #include <set>
 
 #include "formats/syntax/input_file.hpp"
-#include "formats/syntax/json_tree.hpp"
 #include "pcbmesh/base/error.hpp"
 #include "src/study/choices.hpp"
+#include "src/study/json_fields.hpp"
 
 namespace pcbmesh::study {
 namespace {
 
-using formats::syntax::JsonDocument;
-using formats::syntax::JsonKind;
-using formats::syntax::JsonValue;
-using Json = nlohmann::ordered_json;
-
-constexpr double study_unit_mm = 1.0;  // a bare number is a length in millimetres, as on the command line
-
 // ---- JSON -> Study -----------------------------------------------------------------------------------------------
-
-template <typename Value, std::size_t N>
-void read_choice(const JsonValue& object, std::string_view name, const std::array<Choice<Value>, N>& choices, Value& into) {
-  const auto field = object.find(name);
-  if (!field) return;
-  try {
-    into = value_in(choices, field->as_string(), name);
-  } catch (const Error& error) {
-    if (error.code() != ErrorCode::usage) throw;
-    field->fail(error.text());
-  }
-}
-
-void read_length(const JsonValue& object, std::string_view name, Nm& into) {
-  if (const auto field = object.find(name)) into = field->as_length(study_unit_mm);
-}
-
-void read_optional_length(const JsonValue& object, std::string_view name, std::optional<Nm>& into) {
-  const auto field = object.find_set(name);
-  if (field) into = field->as_length(study_unit_mm);
-}
-
-geometry::Point read_corner(const JsonValue& value) {
-  if (value.as_array().size() != 2) value.fail("expected two lengths, [x, y]");
-  auto it = value.begin();
-  const Nm x = (*it).as_length(study_unit_mm);
-  const Nm y = (*++it).as_length(study_unit_mm);
-  return {x, y};
-}
 
 void read_region(const JsonValue& object, Study& study) {
   object.allow_only({"kind", "nets", "margin", "box"});
@@ -70,7 +34,8 @@ void read_region(const JsonValue& object, Study& study) {
 }
 
 void read_conductors(const JsonValue& object, Study& study) {
-  object.allow_only({"mode", "rules"});
+  object.allow_only({"mode", "rules", "surface"});
+  read_choice(object, "surface", surface_names, study.conductor_surface);
   read_choice(object, "mode", conductor_names, study.conductors);
   const auto rules = object.find("rules");
   if (!rules) return;
@@ -85,19 +50,10 @@ void read_conductors(const JsonValue& object, Study& study) {
   }
 }
 
-void read_frequency(const JsonValue& field, Study& study) {
-  try {
-    study.frequency_hz = field.is(JsonKind::string) ? parse_frequency_hz(field.as_string()) : field.as_number();
-  } catch (const Error& error) {
-    if (error.code() != ErrorCode::usage) throw;
-    field.fail(error.text());
-  }
-}
-
 void read_mesh(const JsonValue& object, Study& study) {
   object.allow_only({"frequency", "longest_edge", "min_angle_deg", "edge_at_copper", "growth", "seed", "smooth",
                      "height_policy", "sublayers", "tolerance"});
-  if (const auto field = object.find_set("frequency")) read_frequency(*field, study);
+  if (const auto field = object.find_set("frequency")) study.frequency_hz = read_frequency_hz(*field);
   read_optional_length(object, "longest_edge", study.longest_edge);
   read_optional_length(object, "edge_at_copper", study.edge_at_copper);
   read_optional_length(object, "tolerance", study.tolerance);
@@ -106,27 +62,16 @@ void read_mesh(const JsonValue& object, Study& study) {
   read_choice(object, "seed", seed_names, study.seed);
   if (const auto field = object.find("smooth")) study.smooth = field->as_boolean();
   read_choice(object, "sublayers", sublayer_names, study.sublayers);
-  const auto policy = object.find("height_policy");
-  if (!policy) return;
-  try {
-    study.policy = policy->is(JsonKind::number) ? parse_height_policy(std::to_string(policy->as_integer()))
-                                                : parse_height_policy(policy->as_string());
-  } catch (const Error& error) {
-    if (error.code() != ErrorCode::usage) throw;
-    policy->fail(error.text());
-  }
+  if (const auto policy = object.find("height_policy"))
+    study.policy = parsed(*policy, [&] {
+      return policy->is(JsonKind::number) ? parse_height_policy(std::to_string(policy->as_integer()))
+                                          : parse_height_policy(policy->as_string());
+    });
 }
 
 void read_output(const JsonValue& object, Study& study) {
   object.allow_only({"unit"});
-  const auto unit = object.find("unit");
-  if (!unit) return;
-  try {
-    study.unit = parse_length_unit(unit->as_string());
-  } catch (const Error& error) {
-    if (error.code() != ErrorCode::usage) throw;
-    unit->fail(error.text());
-  }
+  if (const auto unit = object.find("unit")) study.unit = parsed(*unit, [&] { return parse_length_unit(unit->as_string()); });
 }
 
 void read_version(const JsonValue& root) {
@@ -136,6 +81,13 @@ void read_version(const JsonValue& root) {
                              Study::schema_version));
 }
 
+std::optional<JsonValue> element(const JsonValue& array, std::string_view number) {
+  std::int64_t i = 0;
+  for (const JsonValue value : array)
+    if (number == std::to_string(i++)) return value;
+  return std::nullopt;
+}
+
 /// check() names fields by JSON pointer; here the pointer becomes a line.
 Spot spot_of(const JsonValue& root, std::string_view text) {
   JsonValue at = root;
@@ -143,7 +95,7 @@ Spot spot_of(const JsonValue& root, std::string_view text) {
   while (!rest.empty() && rest.front() == '/') {
     rest.remove_prefix(1);
     const std::string_view step = rest.substr(0, rest.find('/'));
-    const auto next = at.is(JsonKind::object) ? at.find(step) : std::nullopt;
+    const auto next = at.is(JsonKind::object) ? at.find(step) : at.is(JsonKind::array) ? element(at, step) : std::nullopt;
     if (!next) break;
     at = *next;
     rest.remove_prefix(step.size());
@@ -151,9 +103,18 @@ Spot spot_of(const JsonValue& root, std::string_view text) {
   return at.spot();
 }
 
-// ---- Study -> JSON -----------------------------------------------------------------------------------------------
+}  // namespace
 
-/// Exact text of a length: whole millimetres, micrometres or nanometres.
+// ---- shared with physics_json.cpp ---------------------------------------------------------------------------------
+
+geometry::Point read_corner(const JsonValue& value) {
+  if (value.as_array().size() != 2) value.fail("expected two lengths, [x, y]");
+  auto it = value.begin();
+  const Nm x = (*it).as_length(study_unit_mm);
+  const Nm y = (*++it).as_length(study_unit_mm);
+  return {x, y};
+}
+
 std::string exact_length(Nm value) {
   if (value % nm_per_mm == 0) return fmt::format("{}mm", value / nm_per_mm);
   if (value % nm_per_um == 0) return fmt::format("{}um", value / nm_per_um);
@@ -168,12 +129,13 @@ Json corner(geometry::Point p) {
   return Json::array({exact_length(p.x), exact_length(p.y)});
 }
 
-}  // namespace
+// --------------------------------------------------------------------------------------------------------------------
 
 Study parse_study(std::string_view json, std::string_view file_name) {
   const JsonDocument document = JsonDocument::parse(json, file_name, ErrorCode::study_invalid);
   const JsonValue root = document.root();
-  root.allow_only({"$schema", "schema_version", "note", "region", "conductors", "air", "mesh", "arcs", "output", "limits"});
+  root.allow_only({"$schema", "schema_version", "note", "region", "conductors", "air", "mesh", "arcs", "output", "limits",
+                   "problem", "solver", "ports", "boundaries", "sweep", "modes"});
   read_version(root);
   if (const auto field = root.find("$schema")) (void)field->as_string();
   if (const auto field = root.find("note")) (void)field->as_string();
@@ -197,6 +159,7 @@ Study parse_study(std::string_view json, std::string_view file_name) {
     object->allow_only({"max_prisms"});
     if (const auto field = object->find("max_prisms")) study.max_prisms = field->as_integer();
   }
+  read_physics(root, study);
   try {
     check(study);
   } catch (const Error& error) {
@@ -220,6 +183,7 @@ std::string to_json(const Study& study) {
   if (study.box) region["box"] = Json{{"min", corner(study.box->min)}, {"max", corner(study.box->max)}};
   Json& conductors = root["conductors"];
   conductors["mode"] = name_of(study.conductors);
+  conductors["surface"] = name_of(study.conductor_surface);
   conductors["rules"] = Json::array();
   for (const ConductorRule& rule : study.conductor_rules)
     conductors["rules"].push_back(Json{{"net", rule.net}, {"layer", rule.layer}, {"mode", name_of(rule.mode)}});
@@ -240,6 +204,7 @@ std::string to_json(const Study& study) {
   root["arcs"] = Json{{"sagitta", exact_length(study.arcs.sagitta_nm)}, {"mode", name_in(arc_names, study.arcs.mode)}};
   root["output"] = Json{{"unit", name_of(study.unit)}};
   root["limits"] = Json{{"max_prisms", study.max_prisms}};
+  write_physics(study, root);
   // A net name may hold any bytes; those that are no UTF-8 are replaced rather than refused.
   return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -11,6 +11,7 @@
 
 #include "pcbmesh/base/units.hpp"
 #include "pcbmesh/geometry/path.hpp"
+#include "pcbmesh/study/physics.hpp"
 
 namespace pcbmesh::study {
 
@@ -23,8 +24,15 @@ enum class RegionKind {
 
 /// How copper enters the mesh.
 enum class ConductorMode {
-  solid,  ///< copper is a meshed volume
-  hollow  ///< copper is left out; its skin is tagged surface|net
+  solid,   ///< copper is a meshed volume
+  hollow,  ///< copper is left out; its skin is tagged surface|net
+  sheet    ///< copper has no thickness: faces at one level, tagged sheet|net; barrels of the net are hollow
+};
+
+/// What holds on the faces of hollow and sheet conductors.
+enum class ConductorSurface {
+  lossy,  ///< surface impedance of the copper's conductivity
+  pec     ///< perfect conductor
 };
 
 /// Overrides the conductor mode of one net, one layer, or one net on one layer. Later rules win.
@@ -73,6 +81,7 @@ struct Study {
 
   ConductorMode conductors = ConductorMode::solid;
   std::vector<ConductorRule> conductor_rules;
+  ConductorSurface conductor_surface = ConductorSurface::lossy;
 
   Nm air_above = 1 * nm_per_mm;  ///< 0 = no air: outside the outline is then void
   Nm air_below = 1 * nm_per_mm;
@@ -92,11 +101,19 @@ struct Study {
   LengthUnit unit = LengthUnit::metre;
   std::int64_t max_prisms = 200'000'000;  ///< refuse above this forecast
 
+  Problem problem = Problem::driven;
+  Solver solver = Solver::none;
+  std::vector<Port> ports;
+  std::array<Boundary, num_hull_sides> boundaries{};  ///< by HullSide
+  std::optional<Sweep> sweep;
+  Modes modes;
+
   bool operator==(const Study&) const;
 };
 
 [[nodiscard]] std::string_view name_of(RegionKind value);
 [[nodiscard]] std::string_view name_of(ConductorMode value);
+[[nodiscard]] std::string_view name_of(ConductorSurface value);
 [[nodiscard]] std::string_view name_of(HeightPolicy value);
 [[nodiscard]] std::string_view name_of(SublayerRule value);
 [[nodiscard]] std::string_view name_of(TriangleSeed value);
@@ -106,6 +123,9 @@ struct Study {
 [[nodiscard]] TriangleSeed parse_triangle_seed(std::string_view text);
 [[nodiscard]] ConductorMode parse_conductor_mode(std::string_view text);
 
+/// Highest frequency of interest: study.frequency_hz, else the end of the sweep, else nothing.
+[[nodiscard]] std::optional<double> highest_frequency_hz(const Study& study);
+
 /// Reads a study JSON (docs/schema/study.schema.json). Unknown fields are errors.
 /// @throws Error study_invalid (102) with the field's JSON pointer, file_unreadable (201), file_syntax (202) with the line.
 [[nodiscard]] Study read_study(const std::filesystem::path& file);
@@ -114,7 +134,17 @@ struct Study {
 /// The study as JSON, every default filled in; parse_study(to_json(s)) == s.
 [[nodiscard]] std::string to_json(const Study& study);
 
-/// Ranges and combinations. @throws Error study_invalid (102).
+/// One thing wrong with a study, by itself or on a board.
+struct Fault {
+  std::string field;  ///< JSON pointer, "/ports/1/net"
+  std::string text;   ///< what, where, what to do
+};
+
+/// Everything wrong with ranges and combinations; empty = fine.
+[[nodiscard]] std::vector<Fault> faults_of(const Study& study);
+/// "/a: text" of one fault; of several, one line each.
+[[nodiscard]] std::string text_of(const std::vector<Fault>& faults);
+/// @throws Error study_invalid (102) naming every fault at once.
 void check(const Study& study);
 
 }  // namespace pcbmesh::study

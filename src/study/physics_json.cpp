@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <utility>
+
+#include "src/study/json_fields.hpp"
+
+namespace pcbmesh::study {
+namespace {
+
+PortPlace read_place(const JsonValue& object) {
+  object.allow_only({"pin", "point", "layer", "side"});
+  PortPlace place;
+  if (const auto field = object.find_set("pin")) place.pin = field->as_string();
+  if (const auto field = object.find_set("point")) place.point = read_corner(*field);
+  if (const auto field = object.find_set("layer")) place.layer = field->as_string();
+  if (const auto field = object.find_set("side"))
+    place.side = parsed(*field, [&] { return parse_hull_side(field->as_string()); });
+  return place;
+}
+
+Port read_port(const JsonValue& object) {
+  object.allow_only({"note", "name", "kind", "net", "reference", "at", "shape", "impedance", "excited", "width", "height"});
+  Port port;
+  if (const auto field = object.find("note")) (void)field->as_string();
+  port.name = object.at("name").as_string();
+  read_choice(object, "kind", port_kind_names, port.kind);
+  port.net = object.at("net").as_string();
+  if (const auto field = object.find("reference")) port.reference = field->as_string();
+  port.at = read_place(object.at("at"));
+  read_choice(object, "shape", port_shape_names, port.shape);
+  if (const auto field = object.find("impedance")) port.impedance_ohm = field->as_number();
+  if (const auto field = object.find("excited")) port.excited = field->as_boolean();
+  read_optional_length(object, "width", port.width);
+  read_optional_length(object, "height", port.height);
+  return port;
+}
+
+Boundary read_boundary(const JsonValue& field) {
+  Boundary boundary;
+  if (field.is(JsonKind::string)) {
+    boundary.kind = parsed(field, [&] { return parse_boundary_kind(field.as_string()); });
+    if (boundary.kind == BoundaryKind::impedance)
+      field.fail("an impedance needs its ohms: {\"kind\": \"impedance\", \"ohms\": 377}");
+    return boundary;
+  }
+  field.allow_only({"kind", "ohms"});
+  (void)field.at("kind");
+  read_choice(field, "kind", boundary_names, boundary.kind);
+  if (const auto ohms = field.find("ohms")) boundary.ohms = ohms->as_number();
+  return boundary;
+}
+
+void read_boundaries(const JsonValue& object, Study& study) {
+  object.allow_only({"all", "xmin", "xmax", "ymin", "ymax", "zmin", "zmax", "side"});
+  if (const auto field = object.find("all")) study.boundaries.fill(read_boundary(*field));
+  for (std::size_t i = 0; i < num_hull_sides; ++i)
+    if (const auto field = object.find(hull_side_names[i].name)) study.boundaries[i] = read_boundary(*field);
+}
+
+Sweep read_sweep(const JsonValue& object) {
+  object.allow_only({"from", "to", "points", "list"});
+  Sweep sweep;
+  if (const auto list = object.find_set("list")) {
+    for (const char* other : {"from", "to", "points"})
+      if (const auto field = object.find_set(other)) field->fail("a list of frequencies stands alone; leave this out");
+    for (const JsonValue hz : list->as_array()) sweep.list_hz.push_back(read_frequency_hz(hz));
+    if (sweep.list_hz.empty()) list->fail("the list is empty; name frequencies, or give from, to and points");
+    return sweep;
+  }
+  sweep.from_hz = read_frequency_hz(object.at("from"));
+  sweep.to_hz = read_frequency_hz(object.at("to"));
+  sweep.points = object.at("points").as_integer();
+  return sweep;
+}
+
+Json boundary_json(const Boundary& boundary) {
+  if (boundary.kind == BoundaryKind::impedance) return {{"kind", name_of(boundary.kind)}, {"ohms", boundary.ohms}};
+  return name_of(boundary.kind);
+}
+
+Json place_json(const PortPlace& place) {
+  if (place.point) {
+    Json out{{"point", corner(*place.point)}};
+    if (!place.layer.empty()) out["layer"] = place.layer;
+    return out;
+  }
+  if (place.side) return {{"side", name_of(*place.side)}};
+  return {{"pin", place.pin}};
+}
+
+}  // namespace
+
+Json port_json(const Port& port) {
+  Json out{{"name", port.name},
+           {"kind", name_of(port.kind)},
+           {"net", port.net},
+           {"reference", port.reference},
+           {"at", place_json(port.at)},
+           {"shape", name_of(port.shape)},
+           {"impedance", port.impedance_ohm},
+           {"excited", port.excited},
+           {"width", optional_length(port.width)}};
+  if (port.kind == PortKind::wave) out["height"] = optional_length(port.height);
+  return out;
+}
+
+void read_physics(const JsonValue& root, Study& study) {
+  read_choice(root, "problem", problem_names, study.problem);
+  read_choice(root, "solver", solver_names, study.solver);
+  if (const auto ports = root.find("ports"))
+    for (const JsonValue entry : ports->as_array()) study.ports.push_back(read_port(entry));
+  if (const auto object = root.find("boundaries")) read_boundaries(*object, study);
+  if (const auto object = root.find_set("sweep")) study.sweep = read_sweep(*object);
+  if (const auto object = root.find("modes")) {
+    object->allow_only({"number", "above"});
+    if (const auto field = object->find("number")) study.modes.number = field->as_integer();
+    if (const auto field = object->find("above")) study.modes.above_hz = read_frequency_hz(*field);
+  }
+}
+
+void write_physics(const Study& study, Json& root) {
+  root["problem"] = name_of(study.problem);
+  root["solver"] = name_of(study.solver);
+  root["ports"] = Json::array();
+  for (const Port& port : study.ports) root["ports"].push_back(port_json(port));
+  Json& boundaries = root["boundaries"];
+  for (std::size_t i = 0; i < num_hull_sides; ++i)
+    boundaries[std::string(hull_side_names[i].name)] = boundary_json(study.boundaries[i]);
+  root["sweep"] = nullptr;
+  if (study.sweep && !study.sweep->list_hz.empty()) root["sweep"] = Json{{"list", study.sweep->list_hz}};
+  if (study.sweep && study.sweep->list_hz.empty())
+    root["sweep"] = Json{{"from", study.sweep->from_hz}, {"to", study.sweep->to_hz}, {"points", study.sweep->points}};
+  root["modes"] = Json{{"number", study.modes.number}, {"above", study.modes.above_hz}};
+}
+
+}  // namespace pcbmesh::study
