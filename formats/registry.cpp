@@ -8,10 +8,16 @@
 #include <string>
 #include <vector>
 
+#include "formats/abaqus/format.hpp"
+#include "formats/elmer/format.hpp"
+#include "formats/exodus/format.hpp"
 #include "formats/kicad/format.hpp"
+#include "formats/mfem/format.hpp"
 #include "formats/msh/format.hpp"
+#include "formats/nastran/format.hpp"
 #include "formats/native_json/format.hpp"
 #include "formats/syntax/input_file.hpp"
+#include "formats/unv/format.hpp"
 #include "formats/vtu/format.hpp"
 #include "pcbmesh/base/error.hpp"
 #include "pcbmesh/mesh/prism_source.hpp"
@@ -21,7 +27,9 @@ namespace {
 
 // The tables: a new format is one include above and one line here.
 constexpr std::array<const BoardFormat*, 2> board_table{&native_json::board_format, &kicad::board_format};
-constexpr std::array<const MeshFormat*, 2> mesh_table{&msh::mesh_format, &vtu::mesh_format};
+constexpr std::array<const MeshFormat*, 8> mesh_table{&msh::mesh_format,    &vtu::mesh_format,     &mfem::mesh_format,
+                                                      &elmer::mesh_format,  &exodus::mesh_format,  &abaqus::mesh_format,
+                                                      &nastran::mesh_format, &unv::mesh_format};
 
 constexpr std::size_t head_bytes = 4096;
 
@@ -110,6 +118,26 @@ std::string names_with(auto ability) {
   return out;
 }
 
+/// Cells that the format has no word for are refused before the first byte. Faces may be left out: the table of formats says so.
+void require_kinds(const mesh::MeshSource& source, const MeshFormat& format, const std::filesystem::path& file) {
+  if (format.scope.written == 0) return;
+  for (const mesh::ElementBlock& block : source.blocks()) {
+    if (mesh::dimension_of(block.kind) < 3 || holds(format.scope.written, block.kind)) continue;
+    std::string known;
+    for (int i = 0; i <= static_cast<int>(mesh::ElementKind::wedge18); ++i)
+      if (const auto kind = static_cast<mesh::ElementKind>(i); mesh::dimension_of(kind) == 3 && holds(format.scope.written, kind))
+        known += fmt::format("{}{}", known.empty() ? "" : ", ", mesh::name_of(kind));
+    throw Error(ErrorCode::format_limit,
+                fmt::format("the mesh has {} cells of kind {}, which {} does not hold; it holds {}{}", block.count,
+                            mesh::name_of(block.kind), format.name, known,
+                            block.kind == mesh::ElementKind::wedge18 && holds(format.scope.written, mesh::ElementKind::wedge15)
+                                ? ". Give --wedge15"
+                            : mesh::order_of(block.kind) == 2 ? ". Write the mesh with order 1, or second order as .msh"
+                                                              : ""),
+                {.file = file.string()});
+  }
+}
+
 }  // namespace
 
 std::span<const BoardFormat* const> board_formats() {
@@ -152,6 +180,7 @@ void write_mesh(mesh::MeshSource& source, const std::filesystem::path& file, con
     throw Error(ErrorCode::usage,
                 fmt::format("{} is not written, only read; these are: {}", chosen.name, names_with(&MeshFormat::write)),
                 {.file = file.string()});
+  require_kinds(source, chosen, file);
   chosen.write(source, file, options, progress);
 }
 

@@ -44,6 +44,8 @@ class ByteSource {
   void end_line();
   /// Skips blanks and line ends; false at the end of the file.
   [[nodiscard]] bool skip_blanks();
+  /// The next byte, after skip_blanks() was true. It stays.
+  [[nodiscard]] char peek() const { return window_[at_]; }
   /// Skips everything up to and with a marker that starts a line. @throws Error file_truncated (205).
   void skip_past(std::string_view marker);
 

@@ -160,7 +160,8 @@ Json bounding_box(const mesh::PrismMesh& mesh) {
 
 }  // namespace
 
-void write_tags(const mesh::PrismMesh& mesh, const std::filesystem::path& file, LengthUnit unit) {
+void write_tags(const mesh::PrismMesh& mesh, const std::filesystem::path& file, LengthUnit unit,
+                const mesh::MeshSource* written) {
   Json out;
   out["schema_version"] = schema_version;
   out["unit_m"] = metres_per(unit);
@@ -168,6 +169,10 @@ void write_tags(const mesh::PrismMesh& mesh, const std::filesystem::path& file, 
   out["layers"] = layers(mesh);
   out["volumes"] = volumes(mesh);
   out["faces"] = faces(mesh);
+  if (written != nullptr)
+    for (const mesh::ElementGroup& group : written->groups())
+      for (Json& entry : out[group.dimension == 3 ? "volumes" : "faces"])
+        if (entry["id"] == group.tag) entry[group.dimension == 3 ? "num_cells" : "num_faces"] = group.num_elements;
   out["ports"] = ports(mesh);
   out["materials"] = materials(mesh);
   out["nets"] = nets(mesh);

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "pcbmesh/base/units.hpp"
+#include "pcbmesh/mesh/mesh_source.hpp"
 #include "pcbmesh/mesh/prism_mesh.hpp"
 
 namespace pcbmesh::formats::tags_json {
@@ -16,7 +17,10 @@ inline constexpr double conductor_sigma_s_per_m = 1e3;
 /// Layout: docs/schema/tags.schema.json. Areas, volumes and the box are in metres whatever the unit of the mesh file.
 /// Nets are listed if they have copper cells and their number of pieces is known.
 /// @param unit  of the mesh file.
+/// @param written  what the mesh file holds if that is not the mesh's prisms: numbers of elements are taken from it. Sizes stay
+///                those of the prisms with straight edges.
 /// @throws Error write_failed (701); the file appears whole or not at all.
-void write_tags(const mesh::PrismMesh& mesh, const std::filesystem::path& file, LengthUnit unit);
+void write_tags(const mesh::PrismMesh& mesh, const std::filesystem::path& file, LengthUnit unit,
+                const mesh::MeshSource* written = nullptr);
 
 }  // namespace pcbmesh::formats::tags_json

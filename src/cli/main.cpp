@@ -20,7 +20,8 @@ constexpr const char* about =
     "  pcbmesh inspect board.kicad_pcb                     layers, nets, sizes\n"
     "  pcbmesh mesh board.kicad_pcb -o board.msh           the whole board\n"
     "  pcbmesh mesh board.kicad_pcb --nets /USB_P,/USB_N --margin 2mm --frequency 10GHz -o usb.msh\n"
-    "  pcbmesh check board.msh                             judge any mesh\n\n"
+    "  pcbmesh check board.msh                             judge any mesh\n"
+    "  pcbmesh convert board.msh board.exo                 any mesh into another format\n\n"
     "Exit codes: 0 fine, 1 findings, 2 usage, 3 input, 4 cannot mesh, 5 output, 70 bug, 130 cancelled.";
 
 int run(int argc, char** argv) {
@@ -29,7 +30,8 @@ int run(int argc, char** argv) {
   program.require_subcommand(1);
   program.get_formatter()->column_width(34);
   const std::array commands{pcbmesh::cli::add_mesh_command(program), pcbmesh::cli::add_inspect_command(program),
-                            pcbmesh::cli::add_check_command(program), pcbmesh::cli::add_formats_command(program)};
+                            pcbmesh::cli::add_check_command(program), pcbmesh::cli::add_convert_command(program),
+                            pcbmesh::cli::add_formats_command(program)};
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -20,7 +20,7 @@ namespace pcbmesh::cli {
 namespace {
 
 struct Options {
-  std::string board, from, to, msh_version;
+  std::string board, from, to, msh_version, mfem_version;
   std::vector<std::string> outputs;
   bool ascii = false, no_check = false, json = false, dry_run = false, quality = false, quiet = false,
        warnings_as_errors = false;
@@ -39,7 +39,7 @@ pipeline::OutputOptions output_options(const Options& options, LengthUnit unit) 
     throw Error(ErrorCode::usage, "no output: give -o board.msh, or --dry-run for the counts alone");
   return {{options.outputs.begin(), options.outputs.end()},
           options.to,
-          {!options.ascii, unit, options.msh_version},
+          {!options.ascii, unit, options.msh_version, options.mfem_version},
           !options.no_check,
           options.threads};
 }
@@ -66,6 +66,7 @@ int run(const Options& options) {
   if (!options.dry_run) {
     written = pipeline::write_outputs(result, output, progress);
     if (written.report) mesh_run.check = &*written.report;
+    mesh_run.second_order = written.second_order;
     const std::filesystem::path summary = pipeline::file_beside(output.meshes.front(), ".report.json");
     mesh_run.files = written.files;
     mesh_run.files.push_back(summary.string());
@@ -86,12 +87,15 @@ Command add_mesh_command(CLI::App& program) {
   auto options = std::make_shared<Options>();
   command->add_option("board", options->board, "Board file: KiCad .kicad_pcb or native .json; .gz and .xz are unpacked")
       ->required();
-  command->add_option("-o,--output", options->outputs, "Mesh file; its ending picks the format (.msh, .vtu); repeatable")
+  command->add_option("-o,--output", options->outputs, "Mesh file; its ending picks the format, see 'pcbmesh formats'; repeatable")
       ->allow_extra_args(false);
   constexpr const char* output = "Output";
   command->add_flag("--ascii", options->ascii, "Text instead of binary, where the format has both")->group(output);
   command->add_option("--msh-version", options->msh_version, "Gmsh format: 4.1 (default) or 2.2 (GetDP, Palace, Elmer)")
       ->check(CLI::IsMember({"4.1", "2.2"}))
+      ->group(output);
+  command->add_option("--mfem-version", options->mfem_version, "MFEM format: 1.3 (default, named sets) or 1.0")
+      ->check(CLI::IsMember({"1.3", "1.0"}))
       ->group(output);
   command->add_option("--from", options->from, "Format of the board (default: by content and name)")->group(output);
   command->add_option("--to", options->to, "Format of the mesh (default: by ending)")->group(output);

@@ -105,6 +105,10 @@ std::string report_json(const MeshRun& run) {
            {"diagnostics", diagnostics_json(r.diagnostics)},
            {"check", run.check == nullptr ? Json(nullptr) : Json::parse(validation::to_json(*run.check))},
            {"files", run.files}};
+  if (run.second_order)
+    out["second_order"] = {{"curved_edges", run.second_order->num_curved_edges},
+                           {"straightened_edges", run.second_order->num_straightened_edges},
+                           {"folded_triangles", run.second_order->num_folded_triangles}};
   return out.dump(2);
 }
 
@@ -128,6 +132,11 @@ std::string report_text(const MeshRun& run) {
   out +=
       line("quality", fmt::format("triangles {:.4f}, prisms {:.4f} (by volume {:.4f}, worst {:.4f})", r.quality.mean_triangle,
                                   r.quality.mean_prism, r.quality.volume_weighted_prism, r.quality.min_prism));
+  if (run.second_order)
+    out += line("order 2", fmt::format("{} chords of the plane lie on their arcs; {} stay straight, because {} triangles would fold",
+                                       grouped(run.second_order->num_curved_edges),
+                                       grouped(run.second_order->num_straightened_edges),
+                                       grouped(run.second_order->num_folded_triangles)));
   double total = 0;
   for (const pipeline::StepTime& t : r.times) total += t.cpu_s;
   out += line("effort", fmt::format("{:.2f} s CPU to mesh, peak memory {:.0f} MiB", total, peak_memory_mib()));

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "pcbmesh/board/board.hpp"
+#include "pcbmesh/extrude/second_order_source.hpp"
 #include "pcbmesh/layering/quality_report.hpp"
 #include "pcbmesh/pipeline/mesh_board.hpp"
 #include "pcbmesh/validation/report.hpp"
@@ -18,6 +20,7 @@ struct MeshRun {
   layering::QualityReport quality;
   const validation::Report* check = nullptr;  ///< null: not checked
   std::vector<std::string> files;             ///< written, in order
+  std::optional<extrude::SecondOrderStatistics> second_order{};
 };
 
 /// JSON for machines: x.report.json and --json. @unit as the keys say.

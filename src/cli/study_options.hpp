@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,9 +14,11 @@ namespace pcbmesh::cli {
 /// The flags of a study, as typed. A study file comes first; flags override its fields.
 struct StudyOptions {
   std::string file, nets, margin, region, conductors, air, air_above, air_below, air_around, frequency, longest_edge,
-      edge_at_copper, seed, policy, sublayers, tolerance, arc_sagitta, unit, problem, solver, sweep;
+      edge_at_copper, seed, policy, sublayers, tolerance, arc_sagitta, unit, split, problem, solver, sweep;
   std::vector<std::string> hollow, solid, sheet, ports, boundaries;
   bool smooth = false;
+  std::optional<bool> wedge15;
+  int order = 0;
   double min_angle = 0, growth = 0, max_prisms = 0;
 };
 

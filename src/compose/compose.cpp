@@ -110,6 +110,7 @@ model::Model compose(const Board& board, const Study& study, Diagnostics& diagno
   add_copper(board, study, names.rules, footprint, stack, parts, diagnostics);
   add_holes(board, study, names.rules, footprint, stack, parts);
   measure_narrowest(board, footprint, parts);
+  if (study.order == 2) add_circles(board, study, footprint, parts);
   if (std::none_of(parts.bodies.begin(), parts.bodies.end(), [](const model::Body& body) {
         return body.kind == model::BodyKind::copper || body.kind == model::BodyKind::barrel;
       }))

@@ -143,7 +143,8 @@ MeshBoardResult mesh_board(const board::Board& board, const study::Study& study,
   const layering::QualityStatistics quality = timed("quality", [&] { return layering::quality_statistics(prisms); });
 
   return {std::move(prisms),    std::move(resolved),    graph.statistics, std::move(graph.ledger), planar.statistics, heights,
-          height_m.value_or(0), feedback_m.has_value(), quality,          std::move(diagnostics),  std::move(times)};
+          height_m.value_or(0), feedback_m.has_value(), quality,          std::move(diagnostics),  std::move(times),
+          {model.circles().begin(), model.circles().end()}};
 }
 
 }  // namespace pcbmesh::pipeline

@@ -9,12 +9,12 @@
 #include "formats/tags_json/tags_json.hpp"
 #include "pcbmesh/base/error.hpp"
 #include "pcbmesh/mesh/mesh_data_source.hpp"
-#include "pcbmesh/mesh/prism_source.hpp"
+#include "pcbmesh/pipeline/element_source.hpp"
 
 namespace pcbmesh::pipeline {
 namespace {
 
-validation::Report judge(const MeshBoardResult& result, const OutputOptions& options, const std::filesystem::path& tags,
+validation::Report judge(mesh::MeshSource& source, const OutputOptions& options, const std::filesystem::path& tags,
                          const Progress& progress) {
   validation::Expectation expectation = validation::read_expectation(tags.string());
   for (const std::filesystem::path& file : options.meshes) {
@@ -24,7 +24,6 @@ validation::Report judge(const MeshBoardResult& result, const OutputOptions& opt
   }
   progress.at("check", 0);
   expectation.unit_m = 1.0;
-  mesh::PrismSource source(result.mesh);
   return validation::check(mesh::expand(source), &expectation, {options.num_threads});
 }
 
@@ -45,9 +44,9 @@ void require_writable(const OutputOptions& options, const std::filesystem::path&
     if (!std::filesystem::is_directory(absolute.parent_path()))
       throw Error(ErrorCode::write_failed, "the folder does not exist; make it first",
                   {.file = absolute.parent_path().string()});
-    if (std::filesystem::is_directory(file))
-      throw Error(ErrorCode::write_failed, "this is a folder; name a file in it, e.g. board.msh", spot);
     const formats::MeshFormat* format = formats::find_mesh_format(file, options.format);
+    if (std::filesystem::is_directory(file) && (format == nullptr || !format->scope.is_folder))
+      throw Error(ErrorCode::write_failed, "this is a folder; name a file in it, e.g. board.msh", spot);
     if (format == nullptr || format->write == nullptr)
       throw Error(ErrorCode::usage,
                   "no mesh format that pcbmesh writes has this ending; 'pcbmesh formats' lists them, --to NAME picks one",
@@ -73,15 +72,17 @@ OutputResult write_outputs(const MeshBoardResult& result, const OutputOptions& o
   const std::filesystem::path tags = file_beside(options.meshes.front(), ".tags.json"),
                               study = file_beside(options.meshes.front(), ".resolved.json");
   // The contract first: whoever sees the mesh finds its meaning beside it.
-  formats::tags_json::write_tags(result.mesh, tags, options.write.unit);
+  ElementSource elements(result);
+  out.second_order = elements.second_order();
+  formats::tags_json::write_tags(result.mesh, tags, options.write.unit, &elements.source());
   write_text_file(study, study::to_json(result.resolved));
   for (const std::filesystem::path& file : options.meshes) {
-    formats::write_mesh(result.mesh, file, options.write, options.format, progress);
+    formats::write_mesh(elements.source(), file, options.write, options.format, progress);
     out.files.push_back(file.string());
   }
   out.files.push_back(tags.string());
   out.files.push_back(study.string());
-  if (options.check) out.report = judge(result, options, tags, progress);
+  if (options.check) out.report = judge(elements.source(), options, tags, progress);
   return out;
 }
 

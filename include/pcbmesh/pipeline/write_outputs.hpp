@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "pcbmesh/base/progress.hpp"
+#include "pcbmesh/extrude/second_order_source.hpp"
 #include "pcbmesh/formats/registry.hpp"
 #include "pcbmesh/pipeline/mesh_board.hpp"
 #include "pcbmesh/validation/report.hpp"
@@ -25,6 +26,7 @@ struct OutputOptions {
 struct OutputResult {
   std::vector<std::string> files;            ///< written, in order
   std::optional<validation::Report> report;  ///< empty if not asked for
+  std::optional<extrude::SecondOrderStatistics> second_order{};
 };
 
 /// "out/board.msh" and ".tags.json" give "out/board.tags.json".
