@@ -106,8 +106,10 @@ void read_faces(const Field& list, Expectation& out) {
     face.tag = read_tag(field, seen);
     face.name = field["name"].text();
     const std::string kind = field["kind"].text();
-    if (kind != "outer" && kind != "conductor") field["kind"].fail("\"outer\" or \"conductor\"");
-    face.outer = kind == "outer";
+    constexpr std::string_view kinds[] = {"outer", "conductor", "sheet", "port", "wave_port", "interface"};
+    if (std::ranges::find(kinds, kind) == std::end(kinds))
+      field["kind"].fail("one of outer, conductor, sheet, port, wave_port, interface");
+    face.outer = field["inner"].is_absent() ? kind == "outer" || kind == "wave_port" : !field["inner"].flag();
     face.num_faces = field["num_faces"].count_or_unknown();
     face.area_m2 = field["area_m2"].measure_or_unknown();
     out.faces.push_back(std::move(face));

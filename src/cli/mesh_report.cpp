@@ -11,6 +11,7 @@
 
 #include "pcbmesh/base/version.hpp"
 #include "src/cli/diagnostics_json.hpp"
+#include "src/cli/explain_text.hpp"
 #include "src/cli/quality_text.hpp"
 #include "src/cli/terminal.hpp"
 
@@ -77,7 +78,7 @@ std::string report_json(const MeshRun& run) {
            {"triangulation",
             {{"seed", study::name_of(r.resolved.seed)},
              {"smooth", r.resolved.smooth},
-             {"longest_edge_bound_m", r.fed_back ? r.common_height_m : static_cast<double>(*r.resolved.longest_edge) * 1e-9},
+             {"longest_edge_bound_m", r.longest_edge_m},
              {"min_angle_deg", r.triangulate.min_angle_deg},
              {"triangles_below_bound", r.triangulate.num_below_bound},
              {"input_vertices", r.triangulate.num_input_vertices},
@@ -88,8 +89,11 @@ std::string report_json(const MeshRun& run) {
              {"common_height_m", r.common_height_m},
              {"fed_back", r.fed_back},
              {"optimal_min_m", r.heights.minimum},
+             {"optimal_weighted_m", r.heights.weighted},
              {"optimal_average_m", r.heights.average},
              {"optimal_max_m", r.heights.maximum}}},
+           {"layers", layers_json(r, run.layers)},
+           {"match", match_json(r)},
            {"quality",
             {{"mean_triangle", r.quality.mean_triangle},
              {"min_triangle", r.quality.min_triangle},

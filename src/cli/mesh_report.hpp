@@ -7,6 +7,7 @@
 
 #include "pcbmesh/board/board.hpp"
 #include "pcbmesh/extrude/second_order_source.hpp"
+#include "pcbmesh/layering/divide_layers.hpp"
 #include "pcbmesh/layering/quality_report.hpp"
 #include "pcbmesh/pipeline/mesh_board.hpp"
 #include "pcbmesh/validation/report.hpp"
@@ -18,8 +19,9 @@ struct MeshRun {
   const board::Board& board;
   const pipeline::MeshBoardResult& result;
   layering::QualityReport quality;
-  const validation::Report* check = nullptr;  ///< null: not checked
-  std::vector<std::string> files;             ///< written, in order
+  std::vector<layering::LayerExplanation> layers;  ///< one per slab
+  const validation::Report* check = nullptr;       ///< null: not checked
+  std::vector<std::string> files;                  ///< written, in order
   std::optional<extrude::SecondOrderStatistics> second_order{};
 };
 

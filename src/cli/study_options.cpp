@@ -70,9 +70,29 @@ std::shared_ptr<StudyOptions> add_study_options(CLI::App& command) {
   command.add_flag("--smooth", o->smooth, "Smooth the triangles; angle bound, size bound and outlines hold")->group(sizes);
   command
       .add_option("--policy", o->policy,
-                  "Common prism height: none, basic, average, maximum, minimum, thinnest_layer, or the paper's case 1 to 5")
+                  "Common prism height: none, basic, average, maximum, minimum, thinnest_layer (the paper's cases 1 to 5), "
+                  "weighted (6), matched (7: longest edge and counts for a target or a budget)")
+      ->group(sizes);
+  command.add_option("--target-quality", o->target_quality, "Policy matched: mean and by volume at least this, fewest prisms")
+      ->group(sizes);
+  command.add_option("--budget-prisms", o->budget_prisms, "Policy matched: at most so many prisms")->group(sizes);
+  command.add_option("--budget-unknowns", o->budget_unknowns, "Policy matched: at most so many edges (lowest edge elements)")
       ->group(sizes);
   command.add_option("--sublayers", o->sublayers, "Cutting of layers: floor, round, ceil, none, optimal, best_mean")
+      ->group(sizes);
+  command.add_option("--elements-per-wavelength", o->elements_per_wavelength, "Edges and heights, local material (default 3)")
+      ->group(sizes);
+  command.add_option("--elements-per-dielectric", o->elements_per_dielectric, "At least so many sub-layers in a dielectric")
+      ->group(sizes);
+  command
+      .add_option("--skin-depth-layers", o->skin_depth_layers,
+                  "So many sub-layers in the first skin depth of meshed copper, growing from its faces, outside too")
+      ->group(sizes);
+  command
+      .add_option("--height-growth", o->height_growth,
+                  "Largest ratio of neighbouring sub-layers, at least 1.1 (default: no limit; 2 with --skin-depth-layers)")
+      ->group(sizes);
+  command.add_flag("--paper-compat", o->paper_compat, "The rules the tables of Ye and Daniels imply, slips included")
       ->group(sizes);
   command.add_option("--tolerance", o->tolerance, "Snapping tolerance: auto or a length (default auto)")->group(sizes);
   command.add_option("--arc-sagitta", o->arc_sagitta, "Largest distance of chord and arc (default 5um)")->group(sizes);
@@ -114,6 +134,19 @@ study::Study study_from(const StudyOptions& o) {
   if (o.smooth) s.smooth = true;
   if (!o.policy.empty()) s.policy = study::parse_height_policy(o.policy);
   if (!o.sublayers.empty()) s.sublayers = study::parse_sublayer_rule(o.sublayers);
+  const auto count = [](const char* flag, double value) {
+    if (!(value >= 1 && value < 1e15)) throw Error(ErrorCode::usage, fmt::format("{} {} is no count", flag, value));
+    return static_cast<std::int64_t>(value);
+  };
+  study::HeightBounds& bounds = s.height_bounds;
+  if (o.elements_per_wavelength) bounds.elements_per_wavelength = *o.elements_per_wavelength;
+  if (o.elements_per_dielectric) bounds.elements_per_dielectric = o.elements_per_dielectric;
+  if (o.skin_depth_layers) bounds.skin_depth_layers = o.skin_depth_layers;
+  if (o.height_growth) bounds.height_growth = o.height_growth;
+  if (o.target_quality) s.match.target_quality = o.target_quality;
+  if (o.budget_prisms) s.match.budget_prisms = count("--budget-prisms", *o.budget_prisms);
+  if (o.budget_unknowns) s.match.budget_unknowns = count("--budget-unknowns", *o.budget_unknowns);
+  if (o.paper_compat) s.paper_compat = true;
   if (o.tolerance == "auto")
     s.tolerance.reset();
   else if (!o.tolerance.empty())
@@ -123,11 +156,7 @@ study::Study study_from(const StudyOptions& o) {
   if (!o.split.empty()) s.split = study::parse_element_split(o.split);
   if (o.order != 0) s.order = o.order;
   if (o.wedge15) s.wedge_nodes = *o.wedge15 ? 15 : 18;
-  if (o.max_prisms != 0) {
-    if (!(o.max_prisms >= 1 && o.max_prisms < 1e15))
-      throw Error(ErrorCode::usage, fmt::format("--max-prisms {} is no count", o.max_prisms));
-    s.max_prisms = static_cast<std::int64_t>(o.max_prisms);
-  }
+  if (o.max_prisms != 0) s.max_prisms = count("--max-prisms", o.max_prisms);
   take_physics_options(o, s);
   study::check(s);
   return s;

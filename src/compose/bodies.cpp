@@ -21,16 +21,6 @@ using model::BodyKind;
 using model::BodyShape;
 using model::ModelParts;
 
-bool is_hollow(const study::Study& study, const std::vector<ResolvedRule>& rules, std::int32_t net, std::int32_t copper_layer) {
-  bool hollow = study.conductors == study::ConductorMode::hollow;
-  for (const ResolvedRule& rule : rules) {
-    if (!rule.any_net && rule.net != net) continue;
-    if (!rule.any_layer && rule.copper_layer != copper_layer) continue;
-    hollow = rule.hollow;
-  }
-  return hollow;
-}
-
 /// Rings of a figure, clipped; a convex ring stays simple when clipped, another keeps its mark.
 BodyShape shape_of(const geometry::Figure& figure, const study::Study& study, const Footprint& footprint, std::int64_t line) {
   BodyShape shape;
@@ -86,6 +76,35 @@ Nm width_of(const geometry::Figure& figure) {
 
 }  // namespace
 
+study::ConductorMode mode_of(const study::Study& study, const std::vector<ResolvedRule>& rules, std::int32_t net,
+                             std::int32_t copper_layer) {
+  study::ConductorMode mode = study.conductors;
+  for (const ResolvedRule& rule : rules) {
+    if (!rule.any_net && rule.net != net) continue;
+    if (!rule.any_layer && rule.copper_layer != copper_layer) continue;
+    mode = rule.mode;
+  }
+  return copper_layer < 0 && mode == study::ConductorMode::sheet ? study::ConductorMode::hollow : mode;
+}
+
+std::vector<char> find_sheet_layers(const Board& board, const study::Study& study, const std::vector<ResolvedRule>& rules,
+                                    const Footprint& footprint) {
+  const std::size_t num_layers = board.copper_layers().size(), num_nets = board.nets().size() + 1;
+  std::vector<char> has_copper(num_layers, 0), only_sheets(num_layers, 1), seen(num_layers * num_nets, 0);
+  for (const board::Shape& shape : board.shapes()) {
+    const auto layer = static_cast<std::size_t>(shape.copper_layer);
+    char& met = seen[layer * num_nets + static_cast<std::size_t>(shape.net + 1)];
+    if (met || !geometry::bounds(shape.figure).touches(footprint.box)) continue;
+    met = has_copper[layer] = 1;
+    if (mode_of(study, rules, shape.net, shape.copper_layer) != study::ConductorMode::sheet) only_sheets[layer] = 0;
+  }
+  constexpr std::int32_t some_net = -2;  // matched by rules for any net alone
+  for (std::size_t layer = 0; layer < num_layers; ++layer)
+    if (!has_copper[layer])
+      only_sheets[layer] = mode_of(study, rules, some_net, static_cast<std::int32_t>(layer)) == study::ConductorMode::sheet;
+  return only_sheets;
+}
+
 void add_domain_and_board(const Footprint& footprint, const Stack& stack, ModelParts& parts) {
   const auto last = static_cast<std::int32_t>(stack.slabs.size()) - 1;
   const auto body = [&](std::string name, BodyKind kind) {
@@ -125,18 +144,23 @@ void add_copper(const Board& board, const study::Study& study, const std::vector
   }
   for (auto& [key, shapes] : groups) {
     const auto [copper_layer, net] = key;
-    const std::int32_t slab = stack.copper_slab[static_cast<std::size_t>(copper_layer)];
-    const auto stackup_index = static_cast<std::size_t>(board.copper_layers()[static_cast<std::size_t>(copper_layer)]);
-    append_body(parts,
-                {.name = fmt::format("copper {} on {}", short_net_name(board, net), board.copper_name(copper_layer)),
-                 .kind = BodyKind::copper,
-                 .material = board.stackup()[stackup_index].material,
-                 .net = net,
-                 .first_slab = slab,
-                 .last_slab = slab,
-                 .priority = copper_priority,
-                 .hollow = is_hollow(study, rules, net, copper_layer)},
-                std::move(shapes));
+    const CopperPlace& place = stack.copper[static_cast<std::size_t>(copper_layer)];
+    const board::StackupLayer& layer =
+        board.stackup()[static_cast<std::size_t>(board.copper_layers()[static_cast<std::size_t>(copper_layer)])];
+    Body body{.name = fmt::format("copper {} on {}", short_net_name(board, net), board.copper_name(copper_layer)),
+              .kind = BodyKind::copper,
+              .material = layer.material,
+              .net = net,
+              .first_slab = place.low,
+              .last_slab = place.low,
+              .priority = copper_priority};
+    const study::ConductorMode mode = mode_of(study, rules, net, copper_layer);
+    body.hollow = mode == study::ConductorMode::hollow;
+    if (mode == study::ConductorMode::sheet) {
+      body.sheet = model::SheetPlace{place.sheet, layer.name, layer.thickness_nm};
+      body.first_slab = body.last_slab = std::min(place.low, static_cast<std::int32_t>(stack.slabs.size()) - 1);
+    }
+    append_body(parts, std::move(body), std::move(shapes));
   }
 }
 
@@ -154,21 +178,27 @@ void add_holes(const Board& board, const study::Study& study, const std::vector<
       unplated[{drill.first_copper, drill.last_copper}].push_back(std::move(rings));
   }
   const auto last_copper = static_cast<std::int32_t>(board.copper_layers().size()) - 1;
-  const auto slab_of = [&](std::int32_t copper) { return stack.copper_slab[static_cast<std::size_t>(copper)]; };
+  const auto first_slab = [&](std::int32_t copper) { return stack.copper[static_cast<std::size_t>(copper)].low; };
+  const auto last_slab = [&](std::int32_t copper) { return stack.copper[static_cast<std::size_t>(copper)].high - 1; };
+  // A span within one layer that has no slab holds nothing.
   for (auto& [span, shapes] : unplated) {
     const auto [top, bottom] = span;
+    // A hole through all copper goes on through dielectric outside it.
+    const std::int32_t first = bottom == last_copper ? stack.first_board_slab : first_slab(bottom);
+    const std::int32_t last = top == 0 ? stack.last_board_slab : last_slab(top);
+    if (first > last) continue;
     append_body(parts,
                 {.name = fmt::format("hole {} to {}", board.copper_name(top), board.copper_name(bottom)),
                  .kind = BodyKind::hole,
                  .material = stack.air,
-                 // A hole through all copper goes on through dielectric outside it.
-                 .first_slab = bottom == last_copper ? stack.first_board_slab : slab_of(bottom),
-                 .last_slab = top == 0 ? stack.last_board_slab : slab_of(top),
+                 .first_slab = first,
+                 .last_slab = last,
                  .priority = hole_priority},
                 std::move(shapes));
   }
   for (auto& [key, shapes] : plated) {
     const auto [top, bottom, net] = key;
+    if (first_slab(bottom) > last_slab(top)) continue;
     const auto stackup_index = static_cast<std::size_t>(board.copper_layers()[static_cast<std::size_t>(top)]);
     append_body(parts,
                 {.name = fmt::format("barrel {} {} to {}", short_net_name(board, net), board.copper_name(top),
@@ -176,10 +206,10 @@ void add_holes(const Board& board, const study::Study& study, const std::vector<
                  .kind = BodyKind::barrel,
                  .material = board.stackup()[stackup_index].material,
                  .net = net,
-                 .first_slab = slab_of(bottom),
-                 .last_slab = slab_of(top),
+                 .first_slab = first_slab(bottom),
+                 .last_slab = last_slab(top),
                  .priority = barrel_priority,
-                 .hollow = is_hollow(study, rules, net, -1)},
+                 .hollow = mode_of(study, rules, net, -1) == study::ConductorMode::hollow},
                 std::move(shapes));
   }
 }

@@ -22,8 +22,16 @@ struct ResolvedRule {
   std::int32_t net = board::no_net;
   bool any_layer = true;
   std::int32_t copper_layer = -1;
-  bool hollow = false;
+  study::ConductorMode mode = study::ConductorMode::solid;
 };
+
+/// Mode of one net on one copper layer; copper_layer -1 = barrels, which are hollow where sheets are asked for.
+[[nodiscard]] study::ConductorMode mode_of(const study::Study& study, const std::vector<ResolvedRule>& rules, std::int32_t net,
+                                           std::int32_t copper_layer);
+
+/// Copper layers whose conductors in the footprint are sheets, all of them; without any, those meant to have sheets.
+[[nodiscard]] std::vector<char> find_sheet_layers(const board::Board& board, const study::Study& study,
+                                                  const std::vector<ResolvedRule>& rules, const Footprint& footprint);
 
 /// Bodies 0 and 1, and loose cut-outs as holes of what lies outside the board.
 void add_domain_and_board(const Footprint& footprint, const Stack& stack, model::ModelParts& parts);

@@ -13,6 +13,7 @@
 #include "pcbmesh/base/near_miss.hpp"
 #include "src/compose/bodies.hpp"
 #include "src/compose/footprint.hpp"
+#include "src/compose/ports.hpp"
 #include "src/compose/stack.hpp"
 
 namespace pcbmesh::compose {
@@ -21,10 +22,28 @@ namespace {
 using board::Board;
 using study::Study;
 
+model::SideCondition side_condition(const study::Boundary& boundary) {
+  switch (boundary.kind) {
+    case study::BoundaryKind::absorbing:
+      return {model::SideKind::absorbing, 0};
+    case study::BoundaryKind::pec:
+      return {model::SideKind::pec, 0};
+    case study::BoundaryKind::pmc:
+      return {model::SideKind::pmc, 0};
+    case study::BoundaryKind::impedance:
+      return {model::SideKind::impedance, boundary.ohms};
+    case study::BoundaryKind::none:
+    case study::BoundaryKind::periodic:  // refused by study::check
+      break;
+  }
+  return {};
+}
+
 /// Names of the study as indices of the board.
 struct ResolvedNames {
   std::vector<std::int32_t> nets;
   std::vector<ResolvedRule> rules;
+  std::string unknown;  ///< what was not found; empty = nothing
 };
 
 /// Looks names up and collects every unknown one, so that one run tells them all.
@@ -57,7 +76,8 @@ class NameResolver {
     return -1;
   }
 
-  void throw_if_unknown() const {
+  /// What is unknown, in one sentence; empty = nothing.
+  [[nodiscard]] std::string text() const {
     std::string text;
     if (!unknown_nets_.empty())
       text = fmt::format("the board has no net called {}; `pcbmesh inspect` lists its {} nets", unknown_nets_,
@@ -65,7 +85,7 @@ class NameResolver {
     if (!unknown_layers_.empty())
       text += fmt::format("{}no copper layer is called {}; copper layers are {}", text.empty() ? "" : "; ", unknown_layers_,
                           fmt::join(layers_, ", "));
-    if (!text.empty()) throw Error(ErrorCode::name_unknown, text, {.file = board_.source()});
+    return text;
   }
 
  private:
@@ -83,14 +103,19 @@ ResolvedNames resolve_names(const Board& board, const Study& study) {
   for (const std::string& net : study.nets) names.nets.push_back(resolver.net(net));
   for (const study::ConductorRule& rule : study.conductor_rules) {
     ResolvedRule resolved;
-    resolved.hollow = rule.mode == study::ConductorMode::hollow;
+    resolved.mode = rule.mode;
     resolved.any_net = rule.net.empty();
     if (!resolved.any_net) resolved.net = resolver.net(rule.net);
     resolved.any_layer = rule.layer.empty();
     if (!resolved.any_layer) resolved.copper_layer = resolver.copper_layer(rule.layer);
     names.rules.push_back(resolved);
   }
-  resolver.throw_if_unknown();
+  for (const study::Port& port : study.ports) {
+    (void)resolver.net(port.net);
+    if (!port.reference.empty()) (void)resolver.net(port.reference);
+    if (!port.at.layer.empty()) (void)resolver.copper_layer(port.at.layer);
+  }
+  names.unknown = resolver.text();
   return names;
 }
 
@@ -99,8 +124,11 @@ ResolvedNames resolve_names(const Board& board, const Study& study) {
 model::Model compose(const Board& board, const Study& study, Diagnostics& diagnostics) {
   study::check(study);
   const ResolvedNames names = resolve_names(board, study);
-  Stack stack = build_stack(board, study, diagnostics);
+  // A region of unknown nets is nowhere; otherwise what is wrong with the ports is told in the same run.
+  if (!names.unknown.empty() && (study.ports.empty() || std::ranges::count(names.nets, board::no_net) > 0))
+    throw Error(ErrorCode::name_unknown, names.unknown, {.file = board.source()});
   const Footprint footprint = build_footprint(board, study, names.nets, diagnostics);
+  Stack stack = build_stack(board, study, find_sheet_layers(board, study, names.rules, footprint), diagnostics);
 
   model::ModelParts parts;
   parts.source = board.source();
@@ -111,6 +139,16 @@ model::Model compose(const Board& board, const Study& study, Diagnostics& diagno
   add_holes(board, study, names.rules, footprint, stack, parts);
   measure_narrowest(board, footprint, parts);
   if (study.order == 2) add_circles(board, study, footprint, parts);
+  std::vector<study::Fault> faults;
+  add_ports(board, study, names.rules, footprint, stack, parts, faults);
+  if (!names.unknown.empty() || !faults.empty()) {
+    const std::string more = study::text_of(faults);
+    const std::string gap = names.unknown.empty() || more.empty() ? "" : "\n  ";
+    throw Error(names.unknown.empty() ? ErrorCode::port_invalid : ErrorCode::name_unknown, names.unknown + gap + more,
+                {.file = board.source()});
+  }
+  for (std::size_t i = 0; i < study::num_hull_sides; ++i) parts.sides[i] = side_condition(study.boundaries[i]);
+  parts.conductors_are_perfect = study.conductor_surface == study::ConductorSurface::pec;
   if (std::none_of(parts.bodies.begin(), parts.bodies.end(), [](const model::Body& body) {
         return body.kind == model::BodyKind::copper || body.kind == model::BodyKind::barrel;
       }))

@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "pcbmesh/base/error.hpp"
+
 namespace pcbmesh::compose {
 namespace {
 
@@ -39,9 +41,14 @@ std::vector<std::int32_t> kept_layers(const Board& board, Diagnostics& diagnosti
   return kept;
 }
 
-/// Material that fills the gaps of the copper layer kept[at]; -1 = air.
-std::int32_t gap_material(const Board& board, const std::vector<std::int32_t>& kept, std::size_t at) {
-  if (at == 0 || at + 1 == kept.size()) return -1;
+/// What fills the gaps of a copper layer.
+struct Gap {
+  std::int32_t material = -1;  ///< -1 = air
+  bool from_above = true;      ///< it comes from the layer above
+};
+
+Gap gap_of(const Board& board, const std::vector<std::int32_t>& kept, std::size_t at) {
+  if (at == 0 || at + 1 == kept.size()) return {-1, at == 0};
   const auto layer = [&](std::size_t k) -> const StackupLayer& { return board.stackup()[static_cast<std::size_t>(kept[k])]; };
   const StackupLayer* above = nullptr;
   const StackupLayer* below = nullptr;
@@ -49,11 +56,11 @@ std::int32_t gap_material(const Board& board, const std::vector<std::int32_t>& k
     if (layer(k).kind == LayerKind::dielectric) above = &layer(k);
   for (std::size_t k = at + 1; k < kept.size() && below == nullptr; ++k)
     if (layer(k).kind == LayerKind::dielectric) below = &layer(k);
-  if (above == nullptr && below == nullptr) return -1;
-  if (above == nullptr) return below->material;
-  if (below == nullptr) return above->material;
+  if (above == nullptr && below == nullptr) return {};
+  if (above == nullptr) return {below->material, false};
+  if (below == nullptr) return {above->material, true};
   const bool only_above_is_prepreg = is_called_prepreg(board, *above) && !is_called_prepreg(board, *below);
-  return only_above_is_prepreg ? above->material : below->material;
+  return only_above_is_prepreg ? Gap{above->material, true} : Gap{below->material, false};
 }
 
 /// The board's own air if it has one; else air is added under a free name.
@@ -71,12 +78,13 @@ std::int32_t air_among(std::vector<board::Material>& materials) {
 
 }  // namespace
 
-Stack build_stack(const Board& board, const study::Study& study, Diagnostics& diagnostics) {
+Stack build_stack(const Board& board, const study::Study& study, const std::vector<char>& only_sheets,
+                  Diagnostics& diagnostics) {
   Stack stack;
   stack.materials.assign(board.materials().begin(), board.materials().end());
   stack.air = air_among(stack.materials);
   stack.outside = study.air_above > 0 || study.air_below > 0 || study.air_around > 0 ? stack.air : -1;
-  stack.copper_slab.assign(board.copper_layers().size(), -1);
+  stack.copper.resize(board.copper_layers().size());
 
   const auto append = [&](std::string name, model::SlabKind kind, Nm thickness, Nm bottom, std::int32_t material) {
     stack.slabs.push_back({std::move(name), kind, bottom, bottom + thickness, material, stack.outside});
@@ -92,15 +100,23 @@ Stack build_stack(const Board& board, const study::Study& study, Diagnostics& di
     std::int32_t material = layer.material;
     model::SlabKind kind = model::SlabKind::dielectric;
     if (layer.kind == LayerKind::copper) {
-      stack.copper_slab[static_cast<std::size_t>(--copper)] = static_cast<std::int32_t>(stack.slabs.size());
+      const auto here = static_cast<std::size_t>(--copper);
+      const auto face = static_cast<std::int32_t>(stack.slabs.size());
+      const Gap gap = gap_of(board, kept, k);
+      stack.copper[here] = {face, only_sheets[here] ? face : face + 1, only_sheets[here] || gap.from_above ? face : face + 1};
+      if (only_sheets[here]) continue;
       kind = model::SlabKind::copper;
-      material = gap_material(board, kept, k);
-      if (material < 0) material = stack.air;
+      material = gap.material < 0 ? stack.air : gap.material;
     }
     append(layer.name, kind, layer.thickness_nm, z, material);
     z += layer.thickness_nm;
   }
   stack.last_board_slab = static_cast<std::int32_t>(stack.slabs.size()) - 1;
+  if (z == 0)
+    throw Error(ErrorCode::stackup_invalid,
+                "every conductor is a sheet and the stackup has no dielectric: nothing has any height; make the conductors "
+                "solid or hollow",
+                {.file = board.source()});
   if (study.air_above > 0) append("air above", model::SlabKind::air, study.air_above, z, stack.air);
   return stack;
 }

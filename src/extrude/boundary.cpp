@@ -14,7 +14,8 @@
 
 #include "pcbmesh/base/error.hpp"
 #include "pcbmesh/base/running_sum.hpp"
-#include "src/extrude/tag_names.hpp"
+#include "src/extrude/face_tags.hpp"
+#include "src/extrude/port_faces.hpp"
 
 namespace pcbmesh::extrude {
 namespace {
@@ -28,24 +29,9 @@ std::size_t index(std::int32_t i) {
 // Refinement points on a side of the box may be off by rounding; a hundredth of the coordinate grid's step can't mislead.
 constexpr double side_tolerance_m = 1e-11;
 
-/// Provisional face tags: the order in which used ones are listed. Net n is first_surface + 1 + n.
-enum Side : std::int32_t { zmin, zmax, xmin, xmax, ymin, ymax, side, first_surface };
-constexpr std::array<const char*, 7> side_names{"zmin", "zmax", "xmin", "xmax", "ymin", "ymax", "side"};
-
-std::int32_t surface_of(std::int32_t net) {
-  return first_surface + 1 + net;
-}
-
 bool is_hollow(const model::Label& label) {
   return label.is_void() && label.hollow_net >= board::no_net;
 }
-
-/// Directed planar edge with the triangle to its left and, if any, the triangle to its right.
-struct SharedEdge {
-  std::int32_t a = 0, b = 0;
-  std::int32_t left = 0;
-  std::int32_t right = -1;
-};
 
 /// Edges between triangles of different regions and edges of the outline, ordered by lower vertex.
 std::vector<SharedEdge> region_edges(const PlanarMesh& planar) {
@@ -129,82 +115,111 @@ MeshedBox bound(const PlanarMesh& planar, const Columns& columns) {
   return box;
 }
 
-/// Caps in order of level and triangle, with provisional tags.
-std::vector<mesh::Cap> find_caps(const mesh::PrismMeshParts& parts, const Columns& columns, const MeshedBox& box) {
-  const auto regions = parts.planar.regions();
-  const std::int32_t num_slabs = columns.num_slabs(), num_regions = parts.planar.num_regions();
-  const model::Label outside;
-  std::vector<std::int32_t> tag_of_region(index(num_regions));
-  std::vector<char> is_up(index(num_regions));
-  std::vector<mesh::Cap> caps;
-  for (std::int32_t face = 0; face <= num_slabs; ++face) {
-    for (std::int32_t r = 0; r < num_regions; ++r) {
-      const model::Label& below = face == 0 ? outside : columns.at(r, face - 1);
-      const model::Label& above = face == num_slabs ? outside : columns.at(r, face);
-      is_up[index(r)] = above.is_void() ? 1 : 0;
-      const model::Label& gone = above.is_void() ? above : below;
-      if (below.is_void() == above.is_void()) {
-        tag_of_region[index(r)] = -1;
-      } else if (is_hollow(gone)) {
-        tag_of_region[index(r)] = surface_of(gone.hollow_net);
-      } else if (above.is_void()) {
-        tag_of_region[index(r)] = face - 1 == box.last_slab ? zmax : side;
-      } else {
-        tag_of_region[index(r)] = face == box.first_slab ? zmin : side;
+/// Finds caps and walls, with provisional tags.
+class BoundaryFinder {
+ public:
+  BoundaryFinder(const mesh::PrismMeshParts& parts, const Columns& columns, const model::Model& model, const TagSpace& tags,
+                 const PortFootprints& ports)
+      : parts_(parts), columns_(columns), model_(model), tags_(tags), ports_(ports), box_(bound(parts.planar, columns)) {}
+
+  /// In order of level and triangle.
+  [[nodiscard]] std::vector<mesh::Cap> caps() const {
+    const auto regions = parts_.planar.regions();
+    const std::int32_t num_slabs = columns_.num_slabs(), num_regions = parts_.planar.num_regions();
+    std::vector<std::int32_t> tag_of_region(index(num_regions));
+    std::vector<char> is_up(index(num_regions));
+    std::vector<mesh::Cap> caps;
+    for (std::int32_t face = 0; face <= num_slabs; ++face) {
+      for (std::int32_t r = 0; r < num_regions; ++r) {
+        const model::Label& below = face == 0 ? outside_ : columns_.at(r, face - 1);
+        const model::Label& above = face == num_slabs ? outside_ : columns_.at(r, face);
+        // Between two prisms `up` is true.
+        is_up[index(r)] = above.is_void() || !below.is_void() ? 1 : 0;
+        tag_of_region[index(r)] = cap_tag(r, face, below, above);
+      }
+      const std::int32_t level = parts_.plan.first_sublayer(face);
+      for (std::int32_t t = 0; t < parts_.planar.num_triangles(); ++t) {
+        const auto region = index(regions[index(t)]);
+        if (tag_of_region[region] >= 0) caps.push_back({tag_of_region[region], level, t, is_up[region] != 0});
       }
     }
-    const std::int32_t level = parts.plan.first_sublayer(face);
-    for (std::int32_t t = 0; t < parts.planar.num_triangles(); ++t) {
-      const auto region = index(regions[index(t)]);
-      if (tag_of_region[region] >= 0) caps.push_back({tag_of_region[region], level, t, is_up[region] != 0});
-    }
+    return caps;
   }
-  return caps;
-}
 
-/// Walls in order of slab, with provisional tags.
-std::vector<mesh::Wall> find_walls(const mesh::PrismMeshParts& parts, const Columns& columns, const MeshedBox& box) {
-  const PlanarMesh& planar = parts.planar;
-  const std::vector<SharedEdge> edges = region_edges(planar);
-  std::vector<mesh::Wall> walls;
-  const model::Label outside;
-  for (std::int32_t slab = 0; slab < columns.num_slabs(); ++slab) {
-    for (const SharedEdge& edge : edges) {
-      const model::Label& left = columns.at(planar.regions()[index(edge.left)], slab);
-      const model::Label& right = edge.right < 0 ? outside : columns.at(planar.regions()[index(edge.right)], slab);
-      if (left.is_void() == right.is_void()) continue;
-      const model::Label& gone = left.is_void() ? left : right;
-      mesh::Wall wall{side, slab, edge.a, edge.b};
-      if (left.is_void()) std::swap(wall.a, wall.b);
-      wall.tag = is_hollow(gone) ? surface_of(gone.hollow_net)
-                                 : box.side_of(planar.points_m()[index(edge.a)], planar.points_m()[index(edge.b)]);
-      walls.push_back(wall);
+  /// In order of slab.
+  [[nodiscard]] std::vector<mesh::Wall> walls(const std::vector<SharedEdge>& edges) const {
+    std::vector<std::int32_t> port_of_edge(edges.size(), -1);
+    for (std::size_t e = 0; e < edges.size(); ++e) port_of_edge[e] = ports_.on_line(edges[e]);
+    std::vector<mesh::Wall> walls;
+    for (std::int32_t slab = 0; slab < columns_.num_slabs(); ++slab) {
+      for (std::size_t e = 0; e < edges.size(); ++e) {
+        const model::Label& left = left_of(edges[e], slab);
+        const model::Label& right = right_of(edges[e], slab);
+        const std::int32_t tag = wall_tag(edges[e], slab, left, right, port_of_edge[e]);
+        if (tag < 0) continue;
+        mesh::Wall wall{tag, slab, edges[e].a, edges[e].b};
+        if (left.is_void()) std::swap(wall.a, wall.b);
+        walls.push_back(wall);
+      }
     }
+    return walls;
   }
-  return walls;
-}
 
-mesh::FaceTag new_face_tag(std::int32_t provisional, std::span<const std::string> nets) {
-  mesh::FaceTag tag;
-  if (provisional < first_surface) {
-    tag.name = side_names[index(provisional)];
-  } else {
-    tag.kind = mesh::FaceTagKind::conductor;
-    tag.net = provisional - first_surface - 1;
-    tag.name = "surface|" + net_part(nets, tag.net);
+ private:
+  [[nodiscard]] const model::Label& left_of(const SharedEdge& edge, std::int32_t slab) const {
+    return columns_.at(parts_.planar.regions()[index(edge.left)], slab);
   }
-  return tag;
-}
+  [[nodiscard]] const model::Label& right_of(const SharedEdge& edge, std::int32_t slab) const {
+    return edge.right < 0 ? outside_ : columns_.at(parts_.planar.regions()[index(edge.right)], slab);
+  }
+
+  [[nodiscard]] std::int32_t cap_tag(std::int32_t region, std::int32_t face, const model::Label& below,
+                                     const model::Label& above) const {
+    const bool is_inner = !below.is_void() && !above.is_void();
+    if (below.is_void() && above.is_void()) return -1;
+    const model::Label& gone = above.is_void() ? above : below;
+    if (!is_inner && is_hollow(gone)) return tags_.surface(gone.hollow_net);
+    if (const std::int32_t sheet = columns_.sheet_at(region, face); sheet >= 0) {
+      const std::int32_t net = model_.bodies()[index(sheet)].net;
+      return is_inner ? tags_.inner_sheet(net) : tags_.outer_sheet(net);
+    }
+    if (const std::int32_t port = ports_.cap_at(region, face); port >= 0) return tags_.port(port);
+    if (is_inner) return -1;
+    if (above.is_void()) return face - 1 == box_.last_slab ? zmax : side;
+    return face == box_.first_slab ? zmin : side;
+  }
+
+  [[nodiscard]] std::int32_t wall_tag(const SharedEdge& edge, std::int32_t slab, const model::Label& left,
+                                      const model::Label& right, std::int32_t port) const {
+    const bool is_inner = !left.is_void() && !right.is_void();
+    if (left.is_void() && right.is_void()) return -1;
+    const model::Label& gone = left.is_void() ? left : right;
+    if (!is_inner && is_hollow(gone)) return tags_.surface(gone.hollow_net);
+    // Conductors are no part of a port: where a wave port crosses one, its cut belongs to the side.
+    const bool in_copper = left.net >= 0 || right.net >= 0;
+    if (port >= 0 && !in_copper && ports_.has_slab(port, slab)) return tags_.port(port);
+    if (is_inner) return -1;
+    return box_.side_of(parts_.planar.points_m()[index(edge.a)], parts_.planar.points_m()[index(edge.b)]);
+  }
+
+  const mesh::PrismMeshParts& parts_;
+  const Columns& columns_;
+  const model::Model& model_;
+  const TagSpace& tags_;
+  const PortFootprints& ports_;
+  MeshedBox box_;
+  model::Label outside_;
+};
 
 /// Lists the tags in use and gives caps and walls their final ones.
-void number_face_tags(mesh::PrismMeshParts& parts) {
-  std::vector<std::int32_t> final_tag(index(first_surface) + 1 + parts.nets.size(), -1);
+void number_face_tags(mesh::PrismMeshParts& parts, const TagSpace& tags, const model::Model& model) {
+  std::vector<std::int32_t> final_tag(index(tags.size()), -1);
   for (const mesh::Cap& cap : parts.caps) final_tag[index(cap.tag)] = 0;
   for (const mesh::Wall& wall : parts.walls) final_tag[index(wall.tag)] = 0;
   for (std::size_t i = 0; i < final_tag.size(); ++i) {
     if (final_tag[i] < 0) continue;
     final_tag[i] = static_cast<std::int32_t>(parts.face_tags.size());
-    parts.face_tags.push_back(new_face_tag(static_cast<std::int32_t>(i), parts.nets));
+    parts.face_tags.push_back(tags.describe(static_cast<std::int32_t>(i), model));
     parts.face_tags.back().id = final_tag[i] + 1;
   }
   for (mesh::Cap& cap : parts.caps) cap.tag = final_tag[index(cap.tag)];
@@ -230,12 +245,16 @@ void measure_faces(mesh::PrismMeshParts& parts) {
 
 }  // namespace
 
-void add_boundary(mesh::PrismMeshParts& parts, const Columns& columns) {
-  const MeshedBox box = bound(parts.planar, columns);
-  parts.caps = find_caps(parts, columns, box);
-  parts.walls = find_walls(parts, columns, box);
-  number_face_tags(parts);
+void add_boundary(mesh::PrismMeshParts& parts, const Columns& columns, const model::Model& model) {
+  const TagSpace tags(parts.nets.size(), model.ports().size());
+  const PortFootprints ports(parts.planar, model);
+  const std::vector<SharedEdge> edges = region_edges(parts.planar);
+  const BoundaryFinder finder(parts, columns, model, tags, ports);
+  parts.caps = finder.caps();
+  parts.walls = finder.walls(edges);
+  number_face_tags(parts, tags, model);
   measure_faces(parts);
+  add_ports(parts, columns, model, ports, edges);
   // Caps come by level and triangle: a stable sort by tag keeps that order inside each tag.
   std::stable_sort(parts.caps.begin(), parts.caps.end(), [](const mesh::Cap& p, const mesh::Cap& q) { return p.tag < q.tag; });
   std::sort(parts.walls.begin(), parts.walls.end(), [](const mesh::Wall& p, const mesh::Wall& q) {

@@ -6,7 +6,8 @@
 
 namespace pcbmesh::extrude {
 
-/// Fills face_tags, caps and walls of the parts, whose planar mesh, plan and nets are set.
-void add_boundary(mesh::PrismMeshParts& parts, const Columns& columns);
+/// Fills face_tags, caps, walls and ports of the parts, whose planar mesh, plan, nets and materials are set.
+/// @throws Error port_invalid (306) naming every port whose faces are not the rectangle that was asked for.
+void add_boundary(mesh::PrismMeshParts& parts, const Columns& columns, const model::Model& model);
 
 }  // namespace pcbmesh::extrude

@@ -19,10 +19,15 @@ class Columns {
     return labels_[static_cast<std::size_t>(region) * num_slabs_ + static_cast<std::size_t>(slab)];
   }
   [[nodiscard]] std::int32_t num_slabs() const { return static_cast<std::int32_t>(num_slabs_); }
+  /// Body of the sheet at a face, or -1.
+  [[nodiscard]] std::int32_t sheet_at(std::int32_t region, std::int32_t face) const {
+    return sheets_.empty() ? -1 : sheets_[static_cast<std::size_t>(region) * (num_slabs_ + 1) + static_cast<std::size_t>(face)];
+  }
 
  private:
   std::size_t num_slabs_ = 0;
   std::vector<model::Label> labels_;
+  std::vector<std::int32_t> sheets_;  ///< empty if the model has none
 };
 
 }  // namespace pcbmesh::extrude

@@ -100,9 +100,16 @@ Columns::Columns(const mesh::PlanarMesh& planar, const model::Model& model)
     : num_slabs_(model.slabs().size()), labels_(index(planar.num_regions()) * model.slabs().size()) {
   std::vector<bool> has_triangles(index(planar.num_regions()), false);
   for (std::int32_t region : planar.regions()) has_triangles[index(region)] = true;
+  const bool has_sheets =
+      std::any_of(model.bodies().begin(), model.bodies().end(), [](const model::Body& body) { return body.sheet.has_value(); });
+  if (has_sheets) sheets_.assign(index(planar.num_regions()) * (num_slabs_ + 1), -1);
   for (std::int32_t r = 0; r < planar.num_regions(); ++r) {
     if (!has_triangles[index(r)]) continue;
     const auto present = planar.bodies_of_region(r);
+    if (has_sheets) {
+      for (std::int32_t face = 0; face <= num_slabs(); ++face)
+        sheets_[index(r) * (num_slabs_ + 1) + index(face)] = model.sheet_at(face, present);
+    }
     for (std::size_t s = 0; s < num_slabs_; ++s) {
       labels_[index(r) * num_slabs_ + s] = model.resolve(static_cast<std::int32_t>(s), present);
     }
@@ -125,7 +132,7 @@ mesh::PrismMesh extrude(const mesh::PlanarMesh& planar, const mesh::LayerPlan& p
   const Columns columns(planar, model);
   add_volume_tags(parts, columns, layer_of_slab);
   measure_volumes(parts);
-  add_boundary(parts, columns);
+  add_boundary(parts, columns, model);
   parts.net_pieces.assign(net_pieces.begin(), net_pieces.end());
   parts.touching_nets.assign(touching_nets.begin(), touching_nets.end());
   return mesh::PrismMesh::from_parts(std::move(parts));

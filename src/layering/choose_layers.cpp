@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "pcbmesh/base/error.hpp"
+#include "pcbmesh/layering/divide_layers.hpp"
 
 namespace pcbmesh::layering {
 namespace {
@@ -18,7 +19,6 @@ using study::HeightPolicy;
 using study::SublayerRule;
 
 constexpr int most_sublayers_of_slab = 1'000'000;
-constexpr std::int64_t most_sublayers = 10'000'000;
 // Heights come from divisions and sums of decimal lengths: 0.4 / 0.1 must count as 4 although it may fall an ulp short.
 constexpr double ratio_tolerance = 1e-9;
 
@@ -60,6 +60,7 @@ std::optional<double> common_height_m(HeightPolicy policy, const HeightStatistic
   };
   switch (policy) {
     case HeightPolicy::none:
+    case HeightPolicy::matched:
       return std::nullopt;
     case HeightPolicy::basic:
     case HeightPolicy::thinnest_layer:
@@ -70,6 +71,8 @@ std::optional<double> common_height_m(HeightPolicy policy, const HeightStatistic
       return from_mesh(heights.maximum);
     case HeightPolicy::minimum:
       return from_mesh(heights.minimum);
+    case HeightPolicy::weighted:
+      return from_mesh(heights.weighted);
   }
   report_bug("known height policy", __FILE__, __LINE__);
 }
@@ -139,40 +142,35 @@ std::vector<int> best_mean_counts(std::span<const double> layer_heights_m, const
   return best;
 }
 
+std::vector<int> sublayer_counts(std::span<const model::Slab> slabs, SublayerRule rule, std::optional<double> common_height_m,
+                                 const HeightStatistics& final_heights) {
+  std::vector<double> heights;
+  for (const model::Slab& slab : slabs) heights.push_back(height_m(slab));
+  if (rule == SublayerRule::best_mean) return best_mean_counts(heights, final_heights);
+  std::vector<int> counts(slabs.size(), 1);
+  if (!common_height_m && rule != SublayerRule::optimal) return counts;
+  for (std::size_t s = 0; s < slabs.size(); ++s)
+    counts[s] = num_sublayers(rule, heights[s], common_height_m.value_or(0), final_heights);
+  return counts;
+}
+
+std::vector<int> paper_counts(std::span<const model::Slab> slabs, HeightPolicy policy, double common_height_m) {
+  std::vector<int> counts(slabs.size(), 1);
+  if (policy != HeightPolicy::basic) return counts;
+  for (std::size_t s = 0; s < slabs.size(); ++s) {
+    const auto z_m = [&](Nm z) {
+      return static_cast<float>(static_cast<double>(z - slabs.front().z_bottom_nm) * metres_per_nm);
+    };
+    const float height = z_m(slabs[s].z_top_nm) - z_m(slabs[s].z_bottom_nm);
+    counts[s] = to_count(static_cast<double>(height / static_cast<float>(common_height_m)));
+  }
+  return counts;
+}
+
 mesh::LayerPlan choose_layers(std::span<const model::Slab> slabs, SublayerRule rule, std::optional<double> common_height_m,
                               const HeightStatistics& final_heights) {
-  if (slabs.empty()) throw Error(ErrorCode::layering_invalid, "the domain has no layers to cut");
-  std::vector<int> best_counts;
-  if (rule == SublayerRule::best_mean) {
-    std::vector<double> heights;
-    for (const model::Slab& slab : slabs) heights.push_back(height_m(slab));
-    best_counts = best_mean_counts(heights, final_heights);
-  }
-  mesh::LayerPlanParts parts;
-  parts.z_m.push_back(static_cast<double>(slabs.front().z_bottom_nm) * metres_per_nm);
-  for (std::size_t s = 0; s < slabs.size(); ++s) {
-    const model::Slab& slab = slabs[s];
-    const bool is_cut = common_height_m.has_value() || rule == SublayerRule::optimal;
-    const int count = !best_counts.empty() ? best_counts[s]
-                      : is_cut             ? num_sublayers(rule, height_m(slab), common_height_m.value_or(0), final_heights)
-                                           : 1;
-    if (count > most_sublayers_of_slab || static_cast<std::int64_t>(parts.slab.size()) + count > most_sublayers) {
-      Spot spot;
-      spot.layer = slab.layer;
-      throw Error(ErrorCode::layering_invalid,
-                  fmt::format("the layer would be cut into {} sub-layers, more than {} for a layer or {} for the stack; use a "
-                              "larger common height (another height policy) or sub-layer rule none",
-                              count, most_sublayers_of_slab, most_sublayers),
-                  spot);
-    }
-    const auto bottom = static_cast<double>(slab.z_bottom_nm), height = static_cast<double>(slab.z_top_nm - slab.z_bottom_nm);
-    for (int k = 1; k <= count; ++k) {
-      const double z_nm = k == count ? static_cast<double>(slab.z_top_nm) : bottom + height * k / count;
-      parts.z_m.push_back(z_nm * metres_per_nm);
-      parts.slab.push_back(static_cast<std::int32_t>(s));
-    }
-  }
-  return mesh::LayerPlan::from_parts(std::move(parts));
+  const std::vector<SlabLimits> unlimited(slabs.size());
+  return divide_layers(slabs, sublayer_counts(slabs, rule, common_height_m, final_heights), unlimited, std::nullopt).plan;
 }
 
 }  // namespace pcbmesh::layering

@@ -65,6 +65,15 @@ double mean_quality_at(const HeightStatistics& heights, double height) {
   return sum.total() / static_cast<double>(heights.num_triangles);
 }
 
+double area_quality_at(const HeightStatistics& heights, double height) {
+  RunningSum sum, area;
+  for (const HeightBin& bin : heights.bins) {
+    sum.add(bin.sum_area_quality * quality_falloff(height / bin.height));
+    area.add(bin.area_m2);
+  }
+  return sum.total() / area.total();
+}
+
 HeightStatistics height_statistics(const mesh::PlanarMesh& mesh) {
   HeightStatistics result;
   const std::int32_t num_triangles = mesh.num_triangles();
@@ -73,27 +82,32 @@ HeightStatistics height_statistics(const mesh::PlanarMesh& mesh) {
     const auto squared = mesh.squared_edges_m2(t);
     return optimal_height(squared[0] + squared[1] + squared[2]);
   };
-  RunningSum height_sum, quality_sum;
-  struct Sums {
-    double quality = 0, height = 0, count = 0;
-  };
-  std::map<std::uint32_t, Sums> sums;  // few hundred at most; ascending
+  RunningSum height_sum, quality_sum, over_height, over_square;
+  std::map<std::uint32_t, HeightBin> sums;  // few hundred at most; ascending. Heights are summed first, then averaged
   result.minimum = std::numeric_limits<double>::max();
   for (std::int32_t t = 0; t < num_triangles; ++t) {
     const double height = height_of(t);
     result.minimum = std::min(result.minimum, height);
     result.maximum = std::max(result.maximum, height);
     height_sum.add(height);
-    const double quality = triangle_quality(mesh.area_m2(t), 2.0 * height * height);
+    const double area = mesh.area_m2(t), quality = triangle_quality(area, 2.0 * height * height);
     quality_sum.add(quality);
+    over_height.add(quality / height);
+    over_square.add(quality / (height * height));
     // The upper bits of a positive float grow with its value: exponent and 7 bits of mantissa are the bin.
-    Sums& bin = sums[std::bit_cast<std::uint32_t>(static_cast<float>(height)) >> 16U];
-    bin.quality += max_prism_quality * quality;
+    HeightBin& bin = sums[std::bit_cast<std::uint32_t>(static_cast<float>(height)) >> 16U];
     bin.height += height;
+    bin.sum_quality += max_prism_quality * quality;
     bin.count += 1;
+    bin.area_m2 += area;
+    bin.sum_area_quality += area * max_prism_quality * quality;
   }
   result.num_triangles = num_triangles;
-  for (const auto& [key, bin] : sums) result.bins.push_back({bin.height / bin.count, bin.quality});
+  for (auto [key, bin] : sums) {
+    bin.height /= bin.count;
+    result.bins.push_back(bin);
+  }
+  result.weighted = over_height.total() / over_square.total();
   result.average = height_sum.total() / num_triangles;
   result.mean_triangle_quality = quality_sum.total() / num_triangles;
   for (std::int32_t t = 0; t < num_triangles; ++t) result.num_below_average += height_of(t) < result.average ? 1 : 0;

@@ -92,8 +92,9 @@ void add_to(QualityHistogram& histogram, double value, std::int64_t count) {
 class WorstList {
  public:
   explicit WorstList(int size) : size_(static_cast<std::size_t>(std::max(size, 0))) {}
-  void offer(double quality, std::int32_t slab, std::int32_t triangle) {
-    const Entry entry{quality, slab, triangle};
+  using Entry = std::tuple<double, std::int32_t, std::int32_t, std::size_t>;  ///< quality, slab, triangle, which equal cuts
+  void offer(double quality, std::int32_t slab, std::int32_t triangle, std::size_t equal_cuts) {
+    const Entry entry{quality, slab, triangle, equal_cuts};
     if (entries_.size() == size_) {
       if (size_ == 0 || !(entry < entries_.front())) return;
       std::pop_heap(entries_.begin(), entries_.end());
@@ -102,40 +103,49 @@ class WorstList {
     entries_.push_back(entry);
     std::push_heap(entries_.begin(), entries_.end());
   }
-  [[nodiscard]] std::vector<std::tuple<double, std::int32_t, std::int32_t>> sorted() && {
+  [[nodiscard]] std::vector<Entry> sorted() && {
     std::sort_heap(entries_.begin(), entries_.end());
     return std::move(entries_);
   }
 
  private:
-  using Entry = std::tuple<double, std::int32_t, std::int32_t>;
   std::size_t size_;
   std::vector<Entry> entries_;
 };
 
-/// Height and number of sub-layers of each slab.
+/// Sub-layers of equal height in one slab.
+struct EqualCuts {
+  std::size_t height = 0;  ///< index into heights
+  std::int32_t count = 0, first_sublayer = 0;
+};
 struct SlabCuts {
-  std::vector<double> heights;              ///< distinct
-  std::vector<std::int32_t> height, count;  ///< per slab: index into heights, sub-layers
+  std::vector<double> heights;                ///< distinct
+  std::vector<std::vector<EqualCuts>> slabs;  ///< ascending in height index
 };
 
 SlabCuts cuts_of(const mesh::LayerPlan& plan) {
   SlabCuts cuts;
   for (std::int32_t slab = 0; slab < plan.num_slabs(); ++slab) {
-    const std::int32_t first = plan.first_sublayer(slab), count = plan.first_sublayer(slab + 1) - first;
-    const double height = plan.height_m(first);
-    const auto same = std::find_if(cuts.heights.begin(), cuts.heights.end(),
-                                   [&](double other) { return std::abs(other - height) <= 1e-9 * height; });
-    cuts.height.push_back(static_cast<std::int32_t>(same - cuts.heights.begin()));
-    if (same == cuts.heights.end()) cuts.heights.push_back(height);
-    cuts.count.push_back(count);
+    std::vector<EqualCuts>& equal = cuts.slabs.emplace_back();
+    for (std::int32_t k = plan.first_sublayer(slab); k < plan.first_sublayer(slab + 1); ++k) {
+      const double height = plan.height_m(k);
+      const auto same = std::find_if(cuts.heights.begin(), cuts.heights.end(),
+                                     [&](double other) { return std::abs(other - height) <= 1e-9 * height; });
+      const auto at = static_cast<std::size_t>(same - cuts.heights.begin());
+      if (same == cuts.heights.end()) cuts.heights.push_back(height);
+      const auto known = std::find_if(equal.begin(), equal.end(), [&](const EqualCuts& c) { return c.height == at; });
+      if (known == equal.end())
+        equal.push_back({at, 1, k});
+      else
+        ++known->count;
+    }
   }
   return cuts;
 }
 
-WorstPrism describe(const mesh::PrismMesh& mesh, const SlabCuts& cuts,
-                    const std::tuple<double, std::int32_t, std::int32_t>& entry) {
-  const auto [quality, slab, triangle] = entry;
+WorstPrism describe(const mesh::PrismMesh& mesh, const SlabCuts& cuts, const WorstList::Entry& entry) {
+  const auto [quality, slab, triangle, at] = entry;
+  const EqualCuts& equal = cuts.slabs[index(slab)][at];
   const auto z = mesh.plan().z_m();
   WorstPrism out;
   out.quality = quality;
@@ -143,11 +153,11 @@ WorstPrism describe(const mesh::PrismMesh& mesh, const SlabCuts& cuts,
     out.at_m[0] += mesh.planar().points_m()[index(corner)][0] / 3.0;
     out.at_m[1] += mesh.planar().points_m()[index(corner)][1] / 3.0;
   }
-  out.z_m = 0.5 * (z[index(mesh.plan().first_sublayer(slab))] + z[index(mesh.plan().first_sublayer(slab + 1))]);
-  out.height_m = cuts.heights[index(cuts.height[index(slab)])];
+  out.z_m = 0.5 * (z[index(equal.first_sublayer)] + z[index(equal.first_sublayer) + 1]);
+  out.height_m = cuts.heights[equal.height];
   out.triangle = triangle;
   out.slab = slab;
-  out.num_sublayers = cuts.count[index(slab)];
+  out.num_sublayers = equal.count;
   out.group = mesh.volume_tags()[index(mesh.tag_of(slab, triangle))].name;
   return out;
 }
@@ -183,7 +193,7 @@ PrismMeasures prism_measures(double area_m2, const std::array<double, 3>& square
 QualityReport quality_report(const mesh::PrismMesh& mesh, int num_worst) {
   const mesh::PlanarMesh& planar = mesh.planar();
   const SlabCuts cuts = cuts_of(mesh.plan());
-  const auto num_slabs = static_cast<std::int32_t>(cuts.count.size());
+  const auto num_slabs = static_cast<std::int32_t>(cuts.slabs.size());
   QualityReport report;
   const std::vector<std::int64_t> none(num_bins, 0);
   report.histograms = {{"prism_quality", 0, 1.05, none},
@@ -202,10 +212,13 @@ QualityReport quality_report(const mesh::PrismMesh& mesh, int num_worst) {
     for (std::int32_t slab = 0; slab < num_slabs; ++slab) {
       const std::int32_t tag = mesh.tag_of(slab, t);
       if (tag < 0) continue;
-      const std::size_t h = index(cuts.height[index(slab)]);
-      counts[h] += cuts.count[index(slab)];
-      tags[index(tag)].add(measures[h], base.area * cuts.heights[h], cuts.count[index(slab)]);
-      worst.offer(measures[h].quality, slab, t);
+      const std::vector<EqualCuts>& slab_cuts = cuts.slabs[index(slab)];
+      for (std::size_t i = 0; i < slab_cuts.size(); ++i) {
+        const auto [h, count, first] = slab_cuts[i];
+        counts[h] += count;
+        tags[index(tag)].add(measures[h], base.area * cuts.heights[h], count);
+        worst.offer(measures[h].quality, slab, t, i);
+      }
     }
     for (std::size_t h = 0; h < measures.size(); ++h) {
       if (counts[h] == 0) continue;

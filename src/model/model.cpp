@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pcbmesh/model/model.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "pcbmesh/base/error.hpp"
@@ -26,6 +27,16 @@ Model Model::from_parts(ModelParts parts) {
     PCBMESH_ASSERT(i >= 2 || (body.first_slab == 0 && body.last_slab == num_slabs - 1));
     PCBMESH_ASSERT(body.material >= -1 && body.material < num_materials && body.net >= board::no_net && body.net < num_nets);
   }
+  const std::size_t first_port = parts.bodies.size() - std::min(parts.bodies.size(), parts.ports.size());
+  for (std::size_t i = 0; i < parts.bodies.size(); ++i)
+    PCBMESH_ASSERT((parts.bodies[i].kind == BodyKind::port) == (i >= first_port));
+  for (const Port& port : parts.ports) {
+    PCBMESH_ASSERT(port.body >= 0 && static_cast<std::size_t>(port.body) >= first_port &&
+                   static_cast<std::size_t>(port.body) < parts.bodies.size());
+    PCBMESH_ASSERT(port.positive_net < num_nets && port.negative_net < num_nets && port.face >= 0 && port.face <= num_slabs);
+  }
+  for (const Body& body : parts.bodies)
+    PCBMESH_ASSERT(!body.sheet || (body.sheet->face >= 0 && body.sheet->face <= num_slabs && !body.hollow));
   for (const BodyShape& shape : parts.shapes) {
     PCBMESH_ASSERT(shape.body >= 0 && static_cast<std::size_t>(shape.body) < parts.bodies.size() && !shape.rings.empty());
   }
@@ -42,15 +53,38 @@ Label Model::resolve(std::int32_t slab, std::span<const std::int32_t> present) c
   const Slab& here = parts_->slabs[static_cast<std::size_t>(slab)];
   if (present.empty() || present[0] != 0) return {};
   if (present.size() < 2 || present[1] != 1) return {here.outside, board::no_net, -2};
-  const Body* top = nullptr;
-  for (std::int32_t index : present.subspan(2)) {
+  const std::int32_t index = top_body(slab, present);
+  if (index < 0) return {here.material, board::no_net, -2};
+  const Body& top = parts_->bodies[static_cast<std::size_t>(index)];
+  if (top.hollow) return {-1, board::no_net, top.net};
+  return {top.material, top.net, -2};
+}
+
+std::int32_t Model::top_body(std::int32_t slab, std::span<const std::int32_t> present) const {
+  std::int32_t top = -1, priority = 0;
+  for (const std::int32_t index : present) {
     const Body& body = parts_->bodies[static_cast<std::size_t>(index)];
-    if (slab < body.first_slab || slab > body.last_slab) continue;
-    if (top == nullptr || body.priority > top->priority) top = &body;
+    if (index < 2 || body.sheet || body.kind == BodyKind::port || slab < body.first_slab || slab > body.last_slab) continue;
+    if (top < 0 || body.priority > priority) top = index, priority = body.priority;
   }
-  if (top == nullptr) return {here.material, board::no_net, -2};
-  if (top->hollow) return {-1, board::no_net, top->net};
-  return {top->material, top->net, -2};
+  return top;
+}
+
+std::int32_t Model::sheet_at(std::int32_t face, std::span<const std::int32_t> present) const {
+  if (present.size() < 3 || present[0] != 0 || present[1] != 1) return -1;
+  const auto sheet = std::find_if(present.begin() + 2, present.end(), [&](std::int32_t index) {
+    const Body& body = parts_->bodies[static_cast<std::size_t>(index)];
+    return body.sheet && body.sheet->face == face;
+  });
+  if (sheet == present.end()) return -1;
+  const auto num_slabs = static_cast<std::int32_t>(parts_->slabs.size());
+  for (const std::int32_t slab : {face - 1, face})
+    if (slab >= 0 && slab < num_slabs && top_body(slab, present) >= 0) return -1;
+  return *sheet;
+}
+
+std::int32_t Model::first_port_body() const {
+  return static_cast<std::int32_t>(parts_->bodies.size() - parts_->ports.size());
 }
 
 }  // namespace pcbmesh::model

@@ -44,6 +44,10 @@ bool Conductors::conducts(std::int32_t body) const {
 
 bool Conductors::share_slab(std::int32_t a, std::int32_t b) const {
   const model::Body &first = model_.bodies()[ix(a)], &second = model_.bodies()[ix(b)];
+  if (first.sheet && second.sheet) return first.sheet->face == second.sheet->face;
+  // A sheet meets what begins, ends or passes at its face.
+  if (first.sheet) return second.first_slab <= first.sheet->face && first.sheet->face <= second.last_slab + 1;
+  if (second.sheet) return share_slab(b, a);
   return first.first_slab <= second.last_slab && second.first_slab <= first.last_slab;
 }
 

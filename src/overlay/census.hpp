@@ -26,6 +26,7 @@ class Conductors {
  public:
   explicit Conductors(const model::Model& model) : model_(model) {}
   [[nodiscard]] bool conducts(std::int32_t body) const;
+  /// Whether they have a slab, or the face of a sheet, in common.
   [[nodiscard]] bool share_slab(std::int32_t a, std::int32_t b) const;
   [[nodiscard]] std::int32_t net(std::int32_t body) const { return model_.bodies()[ix(body)].net; }
   [[nodiscard]] const model::Model& model() const { return model_; }

@@ -18,12 +18,13 @@ bool share_end(const Edge& a, const Edge& b) {
 
 }  // namespace
 
-Noder::Noder(EdgeGraph graph, LabelPool& labels, Nm tolerance, const Progress& progress)
+Noder::Noder(EdgeGraph graph, LabelPool& labels, Nm tolerance, const Progress& progress, std::int32_t first_port)
     : points_(std::move(graph.points)),
       edges_(std::move(graph.edges)),
       fresh_(edges_.size(), 1),
       moved_(points_.size(), tolerance > 0 ? 1 : 0),  // distinct points are an exact cluster each
       labels_(labels),
+      first_port_(first_port),
       tolerance_(tolerance),
       tolerance2_(static_cast<double>(tolerance) * static_cast<double>(tolerance)),
       progress_(progress),
@@ -32,7 +33,9 @@ Noder::Noder(EdgeGraph graph, LabelPool& labels, Nm tolerance, const Progress& p
 int Noder::stiffness(const Edge& e) const {
   const auto entries = labels_.entries(e.label);
   if (tolerance_ == 0 || entries.empty()) return 0;
-  return entries[0].body == 0 ? 2 : entries[0].body == 1 ? 1 : 0;
+  if (entries.front().body == 0) return 3;
+  if (entries.back().body >= first_port_) return 2;
+  return entries.front().body == 1 ? 1 : 0;
 }
 
 std::int32_t Noder::add_point(Point p) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "pcbmesh/base/progress.hpp"
@@ -21,11 +22,13 @@ struct NodingCounts {
 /// become vertices, until nothing changes. Tolerance 0: exact arrangement on the nanometre grid.
 ///
 /// Only places that changed are looked at again: a test of two unchanged items cannot come out differently.
-/// With a tolerance, edges of body 0 (domain) and body 1 (board) are stiff: vertices near them move onto them.
+/// With a tolerance, edges of body 0 (domain), body 1 (board) and of ports are stiff: vertices near them move onto them.
 class Noder {
  public:
   /// @param graph  distinct points, normalised edges.
-  Noder(EdgeGraph graph, LabelPool& labels, Nm tolerance, const Progress& progress);
+  /// @param first_port  bodies from here on are ports.
+  Noder(EdgeGraph graph, LabelPool& labels, Nm tolerance, const Progress& progress,
+        std::int32_t first_port = std::numeric_limits<std::int32_t>::max());
 
   /// @throws Error overlay_no_fixpoint (402), cancelled (103).
   void settle();
@@ -35,7 +38,7 @@ class Noder {
   [[nodiscard]] const NodingCounts& counts() const { return counts_; }
   [[nodiscard]] LabelPool& labels() { return labels_; }
   [[nodiscard]] Nm tolerance() const { return tolerance_; }
-  /// 0 = not stiff, 1 = board, 2 = domain.
+  /// 0 = not stiff, 1 = board, 2 = port, 3 = domain.
   [[nodiscard]] int stiffness(const Edge& e) const;
 
   /// Adds a point; settle() looks at it.
@@ -79,9 +82,10 @@ class Noder {
   std::vector<std::uint8_t> moved_;  ///< per point: new or moved since it was last tested
   std::vector<std::uint8_t> used_;   ///< per point: has edges
   std::vector<std::uint8_t>
-      rank_;  ///< per point: 0 free, 1 on a board edge, 2 board corner, 3 on a domain edge, 4 domain corner
+      rank_;  ///< per point: 0 free, else 2 x stiffness of its stiffest edges, less 1 if they run straight through
   std::vector<Move> moves_;
   LabelPool& labels_;
+  std::int32_t first_port_;
   Nm tolerance_ = 0;
   double tolerance2_ = 0;
   const Progress& progress_;

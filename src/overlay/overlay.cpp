@@ -62,7 +62,7 @@ Cleaned clean(const Sheets& sheets, const OverlayOptions& options, const Attempt
   std::vector<const EdgeGraph*> graphs;
   for (const EdgeGraph& graph : simplified) graphs.push_back(&graph);
   progress.at("snapping", 0);
-  Noder noder(overlaid(graphs, labels), labels, attempt.tolerance_nm, progress);
+  Noder noder(overlaid(graphs, labels), labels, attempt.tolerance_nm, progress, conductors.model().first_port_body());
   noder.settle();
   const BluntLimits tips{attempt.blunts ? options.blunt_angle_deg : 0, options.blunt_width_over_tolerance * tol,
                          attempt.spared};
@@ -108,7 +108,7 @@ Spot locate(const Mismatch& mismatch, const Sheets& sheets, const Cleaned& clean
     }
     if (const auto place = differing_place(before, after, 2e5)) spot = spot_of(*place);
     const model::Body& body = model.bodies()[ix(mismatch.body)];
-    spot.layer = model.slabs()[ix(body.first_slab)].layer;
+    spot.layer = body.sheet ? body.sheet->layer : model.slabs()[ix(body.first_slab)].layer;
     spot.net = model.net_name(body.net);
     return spot;
   }

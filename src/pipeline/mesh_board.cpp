@@ -20,8 +20,6 @@ namespace {
 constexpr double speed_of_light_m_per_s = 299'792'458.0;
 /// Longest edge where the study names neither a length nor a frequency: the paper's 2 mm.
 constexpr Nm default_longest_edge_nm = 2 * nm_per_mm;
-/// The paper's rule: at most a third of the wavelength.
-constexpr double edges_per_wavelength = 3.0;
 /// Area of an average triangle over the square of the longest edge where the bound, not the features, decides.
 /// Source: measured for CGAL's mesher, docs/evidence/paper.md.
 constexpr double area_over_edge_squared = 0.198;
@@ -52,12 +50,10 @@ Nm longest_edge_nm(const study::Study& study, const model::Model& model) {
   std::optional<Nm> edge = study.longest_edge;
   if (study.frequency_hz) {
     double slowest = 1;
-    for (const model::Slab& slab : model.slabs()) {
-      const board::Material& m = model.materials()[static_cast<std::size_t>(slab.material)];
-      slowest = std::max(slowest, m.eps_r * m.mu_r);
-    }
-    const double wavelength_m = speed_of_light_m_per_s / *study.frequency_hz / std::sqrt(slowest);
-    const auto bound = static_cast<Nm>(std::max(1.0, std::floor(wavelength_m / edges_per_wavelength / metres_per_nm)));
+    for (const model::Slab& slab : model.slabs()) slowest = std::max(slowest, layering::slowness(model, slab));
+    const double wavelength_m = speed_of_light_m_per_s / *study.frequency_hz / slowest;
+    const double edge_m = wavelength_m / study.height_bounds.elements_per_wavelength;
+    const auto bound = static_cast<Nm>(std::max(1.0, std::floor(edge_m / metres_per_nm)));
     edge = std::min(edge.value_or(bound), bound);
   }
   return edge.value_or(default_longest_edge_nm);
@@ -96,6 +92,8 @@ MeshBoardResult mesh_board(const board::Board& board, const study::Study& study,
 
   overlay::OverlayOptions overlay_options;
   overlay_options.tolerance_nm = study.tolerance;
+  // Simplification by more than a sagitta moves the corners of chords off their arcs, which second order needs.
+  if (study.order == 2) overlay_options.coarsest_auto_nm = study.arcs.sagitta_nm;
   overlay::OverlayResult graph =
       timed("overlay", [&] { return overlay::overlay(model, overlay_options, diagnostics, progress); });
   // Not the tolerance that held in the end: a run that starts there would take other ways, and the resolved study repeats this
@@ -108,43 +106,64 @@ MeshBoardResult mesh_board(const board::Board& board, const study::Study& study,
   if (study.edge_at_copper) options.grading = triangulate::Grading{static_cast<double>(*study.edge_at_copper), study.growth};
   options.seed = study.seed == study::TriangleSeed::hex ? triangulate::Seed::hexagonal : triangulate::Seed::delaunay;
   options.smooth = study.smooth;
+  options.as_in_paper = study.paper_compat;
   triangulate::TriangulateResult planar =
       timed("triangulate", [&] { return triangulate::triangulate(graph.graph, model, options, diagnostics, progress); });
-
-  // The paper's feedback: the common height of the first mesh becomes the longest edge of the second.
-  layering::HeightStatistics heights = layering::height_statistics(planar.mesh);
-  const std::optional<double> height_m = layering::common_height_m(study.policy, heights, model.slabs());
-  std::optional<double> feedback_m;
-  if (height_m) feedback_m = layering::feedback_edge_m(study.policy, *height_m, options.longest_edge_nm * metres_per_nm);
-  if (feedback_m) {
-    const double forecast = area_m2(planar.mesh) / (area_over_edge_squared * *feedback_m * *feedback_m);
-    require_budget(forecast * static_cast<double>(model.slabs().size()), study,
-                   fmt::format("height policy '{}' with edges of {:.4g} um", study::name_of(study.policy), *feedback_m * 1e6));
-    options.longest_edge_nm = *feedback_m / metres_per_nm;
-    planar = timed("triangulate again",
-                   [&] { return triangulate::triangulate(graph.graph, model, options, diagnostics, progress); });
-    heights = layering::height_statistics(planar.mesh);
-  }
-
-  progress.at("choose layers", 0);
-  const mesh::LayerPlan plan = layering::choose_layers(model.slabs(), study.sublayers, height_m, heights);
-  require_budget(static_cast<double>(num_prisms(planar.mesh, plan)), study,
-                 fmt::format("{} triangles in {} sub-layers", planar.mesh.num_triangles(), plan.num_sublayers()));
 
   // Where nets overlap in the layout itself, one of them owns the common copper and the other may be cut by it: how many pieces
   // it has is then no measure of the mesh.
   for (const auto& pair : graph.touching_nets)
     for (const std::int32_t net : pair) graph.net_pieces[static_cast<std::size_t>(net)] = -1;
 
+  const std::vector<layering::SlabLimits> limits = layering::slab_limits(model, study);
+  layering::HeightStatistics heights = layering::height_statistics(planar.mesh);
+  std::vector<int> counts;
+  std::optional<MatchResult> match;
+  const std::optional<double> height_m = layering::common_height_m(study.policy, heights, model.slabs());
+  std::optional<double> feedback_m;
+  if (study.policy == study::HeightPolicy::matched) {
+    // Edge and counts together: predict, triangulate, measure, repeat.
+    MatchedMesh matched = timed("match quality", [&] {
+      return match_quality(graph, model, study, options, std::move(planar), limits, diagnostics, progress);
+    });
+    options.longest_edge_nm = matched.longest_edge_m / metres_per_nm;
+    planar = std::move(matched.planar);
+    counts = std::move(matched.counts);
+    match = std::move(matched.result);
+    heights = layering::height_statistics(planar.mesh);
+  } else {
+    // The paper's feedback: the common height of the first mesh becomes the longest edge of the second.
+    if (height_m) feedback_m = layering::feedback_edge_m(study.policy, *height_m, options.longest_edge_nm * metres_per_nm);
+    if (feedback_m) {
+      const double forecast = area_m2(planar.mesh) / (area_over_edge_squared * *feedback_m * *feedback_m);
+      require_budget(
+          forecast * static_cast<double>(model.slabs().size()), study,
+          fmt::format("height policy '{}' with edges of {:.4g} um", study::name_of(study.policy), *feedback_m * 1e6));
+      options.longest_edge_nm = *feedback_m / metres_per_nm;
+      planar = timed("triangulate again",
+                     [&] { return triangulate::triangulate(graph.graph, model, options, diagnostics, progress); });
+      heights = layering::height_statistics(planar.mesh);
+    }
+    counts = study.paper_compat ? layering::paper_counts(model.slabs(), study.policy, height_m.value_or(0))
+                                : layering::sublayer_counts(model.slabs(), study.sublayers, height_m, heights);
+  }
+
+  progress.at("choose layers", 0);
+  layering::DividedLayers layers = layering::divide_layers(model.slabs(), counts, limits, study.height_bounds.height_growth);
+  require_budget(static_cast<double>(num_prisms(planar.mesh, layers.plan)), study,
+                 fmt::format("{} triangles in {} sub-layers", planar.mesh.num_triangles(), layers.plan.num_sublayers()));
+
   progress.at("extrude", 0);
-  mesh::PrismMesh prisms =
-      timed("extrude", [&] { return extrude::extrude(planar.mesh, plan, model, graph.net_pieces, graph.touching_nets); });
+  mesh::PrismMesh prisms = timed(
+      "extrude", [&] { return extrude::extrude(planar.mesh, layers.plan, model, graph.net_pieces, graph.touching_nets); });
   progress.at("quality", 0);
   const layering::QualityStatistics quality = timed("quality", [&] { return layering::quality_statistics(prisms); });
 
-  return {std::move(prisms),    std::move(resolved),    graph.statistics, std::move(graph.ledger), planar.statistics, heights,
-          height_m.value_or(0), feedback_m.has_value(), quality,          std::move(diagnostics),  std::move(times),
-          {model.circles().begin(), model.circles().end()}};
+  return {std::move(prisms),        std::move(resolved),    graph.statistics,
+          std::move(graph.ledger),  planar.statistics,      heights,
+          height_m.value_or(0),     feedback_m.has_value(), options.longest_edge_nm * metres_per_nm,
+          std::move(layers.layers), std::move(match),       quality,
+          std::move(diagnostics),   std::move(times),       {model.circles().begin(), model.circles().end()}};
 }
 
 }  // namespace pcbmesh::pipeline

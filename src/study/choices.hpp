@@ -28,13 +28,15 @@ inline constexpr std::array<Choice<ConductorMode>, 3> conductor_names{
     {{ConductorMode::solid, "solid"}, {ConductorMode::hollow, "hollow"}, {ConductorMode::sheet, "sheet"}}};
 inline constexpr std::array<Choice<ConductorSurface>, 2> surface_names{
     {{ConductorSurface::lossy, "lossy"}, {ConductorSurface::pec, "pec"}}};
-/// In the order of the paper's case numbers: none, then cases 1 to 5.
-inline constexpr std::array<Choice<HeightPolicy>, 6> policy_names{{{HeightPolicy::none, "none"},
+/// In the order of their numbers: none, the paper's cases 1 to 5, our 6 and 7.
+inline constexpr std::array<Choice<HeightPolicy>, 8> policy_names{{{HeightPolicy::none, "none"},
                                                                    {HeightPolicy::basic, "basic"},
                                                                    {HeightPolicy::average, "average"},
                                                                    {HeightPolicy::maximum, "maximum"},
                                                                    {HeightPolicy::minimum, "minimum"},
-                                                                   {HeightPolicy::thinnest_layer, "thinnest_layer"}}};
+                                                                   {HeightPolicy::thinnest_layer, "thinnest_layer"},
+                                                                   {HeightPolicy::weighted, "weighted"},
+                                                                   {HeightPolicy::matched, "matched"}}};
 inline constexpr std::array<Choice<SublayerRule>, 6> sublayer_names{{{SublayerRule::floor, "floor"},
                                                                      {SublayerRule::round, "round"},
                                                                      {SublayerRule::ceil, "ceil"},

@@ -32,6 +32,41 @@ void check_region(const Study& study, FaultList& faults) {
     faults.require_length("/region/box", value, -max_coordinate_nm, max_coordinate_nm);
 }
 
+void check_heights(const Study& study, FaultList& faults) {
+  const auto require_between = [&](std::string_view field, double value, double least, double most) {
+    if (!(value >= least && value <= most))
+      faults.add(field, fmt::format("{} is out of range; expected {} to {}", value, least, most));
+  };
+  const HeightBounds& bounds = study.height_bounds;
+  require_between("/mesh/elements_per_wavelength", bounds.elements_per_wavelength, 1, 1000);
+  if (bounds.elements_per_dielectric)
+    require_between("/mesh/elements_per_dielectric", *bounds.elements_per_dielectric, 1, 1000);
+  if (bounds.skin_depth_layers) require_between("/mesh/skin_depth_layers", *bounds.skin_depth_layers, 1, 20);
+  if (bounds.skin_depth_layers && !highest_frequency_hz(study))
+    faults.add("/mesh/skin_depth_layers",
+               "the skin depth hangs on the frequency, and none is given; give one (--frequency 10GHz)");
+  if (bounds.height_growth) require_between("/mesh/height_growth", *bounds.height_growth, 1.1, 100);
+  const MatchGoal& goal = study.match;
+  if (goal.target_quality) require_between("/mesh/target_quality", *goal.target_quality, 0.01, 1.02);
+  const auto require_budget = [&](std::string_view field, const std::optional<std::int64_t>& budget) {
+    if (budget && *budget < 1) faults.add(field, fmt::format("{} is out of range; expected at least 1", *budget));
+  };
+  require_budget("/mesh/budget_prisms", goal.budget_prisms);
+  require_budget("/mesh/budget_unknowns", goal.budget_unknowns);
+  const bool has_goal = goal != MatchGoal{};
+  if (has_goal && study.policy != HeightPolicy::matched)
+    faults.add("/mesh/height_policy",
+               fmt::format("a target quality or a budget is for policy matched, but the policy is {}; take matched (--policy "
+                           "matched), or leave the goal out",
+                           name_of(study.policy)));
+  if (!study.paper_compat) return;
+  const bool is_case = study.policy >= HeightPolicy::basic && study.policy <= HeightPolicy::thinnest_layer;
+  if (!is_case || study.seed != TriangleSeed::delaunay || study.smooth || study.edge_at_copper ||
+      bounds.elements_per_dielectric || bounds.skin_depth_layers || bounds.height_growth)
+    faults.add("/mesh/paper_compat",
+               "the paper knows its five policies, plain Delaunay refinement and no bounds on heights; leave the rest out");
+}
+
 void check_mesh(const Study& study, FaultList& faults) {
   if (study.frequency_hz && !is_frequency(*study.frequency_hz))
     faults.add("/mesh/frequency", fmt::format("{} Hz is out of range; expected above 0 and up to 10 THz", *study.frequency_hz));
@@ -49,6 +84,7 @@ void check_mesh(const Study& study, FaultList& faults) {
   if (study.edge_at_copper && study.seed == TriangleSeed::hex)
     faults.add("/mesh/seed",
                "the hexagonal lattice has edges of one length, but edge_at_copper asks for graded ones; leave one out");
+  check_heights(study, faults);
   if (study.tolerance) faults.require_length("/mesh/tolerance", *study.tolerance, 1, nm_per_mm);
 }
 
@@ -87,9 +123,7 @@ std::string_view name_of(ElementSplit value) {
 }
 
 HeightPolicy parse_height_policy(std::string_view text) {
-  constexpr std::array<std::string_view, 5> paper_cases{"1", "2", "3", "4", "5"};
-  for (std::size_t i = 0; i < paper_cases.size(); ++i)
-    if (text == paper_cases[i]) return policy_names[i + 1].value;
+  if (text.size() == 1 && text[0] >= '1' && text[0] <= '7') return policy_names[static_cast<std::size_t>(text[0] - '0')].value;
   return value_in(policy_names, text, "height policy");
 }
 SublayerRule parse_sublayer_rule(std::string_view text) {
@@ -112,7 +146,8 @@ bool Study::operator==(const Study& other) const {
          air_above == other.air_above && air_below == other.air_below && air_around == other.air_around &&
          frequency_hz == other.frequency_hz && longest_edge == other.longest_edge && min_angle_deg == other.min_angle_deg &&
          edge_at_copper == other.edge_at_copper && growth == other.growth && seed == other.seed && smooth == other.smooth &&
-         policy == other.policy && sublayers == other.sublayers && tolerance == other.tolerance &&
+         policy == other.policy && sublayers == other.sublayers && height_bounds == other.height_bounds &&
+         match == other.match && paper_compat == other.paper_compat && tolerance == other.tolerance &&
          arcs.sagitta_nm == other.arcs.sagitta_nm && arcs.mode == other.arcs.mode && unit == other.unit &&
          split == other.split && order == other.order && wedge_nodes == other.wedge_nodes &&
          max_prisms == other.max_prisms && conductor_surface == other.conductor_surface && problem == other.problem &&

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -51,9 +52,34 @@ void read_conductors(const JsonValue& object, Study& study) {
   }
 }
 
+void read_heights(const JsonValue& object, Study& study) {
+  const auto number = [&](std::string_view name, std::optional<double>& into) {
+    if (const auto field = object.find_set(name)) into = field->as_number();
+  };
+  // A count too large for int is too large for the range too: check() says so.
+  const auto count = [&](std::string_view name, std::optional<int>& into) {
+    if (const auto field = object.find_set(name))
+      into = static_cast<int>(std::clamp<std::int64_t>(field->as_integer(), -1, std::numeric_limits<int>::max()));
+  };
+  const auto budget = [&](std::string_view name, std::optional<std::int64_t>& into) {
+    if (const auto field = object.find_set(name)) into = field->as_integer();
+  };
+  if (const auto field = object.find("elements_per_wavelength"))
+    study.height_bounds.elements_per_wavelength = field->as_number();
+  count("elements_per_dielectric", study.height_bounds.elements_per_dielectric);
+  count("skin_depth_layers", study.height_bounds.skin_depth_layers);
+  number("height_growth", study.height_bounds.height_growth);
+  number("target_quality", study.match.target_quality);
+  budget("budget_prisms", study.match.budget_prisms);
+  budget("budget_unknowns", study.match.budget_unknowns);
+  if (const auto field = object.find("paper_compat")) study.paper_compat = field->as_boolean();
+}
+
 void read_mesh(const JsonValue& object, Study& study) {
   object.allow_only({"frequency", "longest_edge", "min_angle_deg", "edge_at_copper", "growth", "seed", "smooth",
-                     "height_policy", "sublayers", "tolerance"});
+                     "height_policy", "sublayers", "tolerance", "elements_per_wavelength", "elements_per_dielectric",
+                     "skin_depth_layers", "height_growth", "target_quality", "budget_prisms", "budget_unknowns",
+                     "paper_compat"});
   if (const auto field = object.find_set("frequency")) study.frequency_hz = read_frequency_hz(*field);
   read_optional_length(object, "longest_edge", study.longest_edge);
   read_optional_length(object, "edge_at_copper", study.edge_at_copper);
@@ -63,6 +89,7 @@ void read_mesh(const JsonValue& object, Study& study) {
   read_choice(object, "seed", seed_names, study.seed);
   if (const auto field = object.find("smooth")) study.smooth = field->as_boolean();
   read_choice(object, "sublayers", sublayer_names, study.sublayers);
+  read_heights(object, study);
   if (const auto policy = object.find("height_policy"))
     study.policy = parsed(*policy, [&] {
       return policy->is(JsonKind::number) ? parse_height_policy(std::to_string(policy->as_integer()))
@@ -134,6 +161,11 @@ Json optional_length(const std::optional<Nm>& value) {
   return value ? Json(exact_length(*value)) : Json(nullptr);
 }
 
+template <typename Value>
+Json optional_value(const std::optional<Value>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+
 Json corner(geometry::Point p) {
   return Json::array({exact_length(p.x), exact_length(p.y)});
 }
@@ -200,7 +232,7 @@ std::string to_json(const Study& study) {
                      {"below", exact_length(study.air_below)},
                      {"around", exact_length(study.air_around)}};
   Json& mesh = root["mesh"];
-  mesh["frequency"] = study.frequency_hz ? Json(*study.frequency_hz) : Json(nullptr);
+  mesh["frequency"] = optional_value(study.frequency_hz);
   mesh["longest_edge"] = optional_length(study.longest_edge);
   mesh["min_angle_deg"] = study.min_angle_deg;
   mesh["edge_at_copper"] = optional_length(study.edge_at_copper);
@@ -209,6 +241,14 @@ std::string to_json(const Study& study) {
   mesh["smooth"] = study.smooth;
   mesh["height_policy"] = name_of(study.policy);
   mesh["sublayers"] = name_of(study.sublayers);
+  mesh["elements_per_wavelength"] = study.height_bounds.elements_per_wavelength;
+  mesh["elements_per_dielectric"] = optional_value(study.height_bounds.elements_per_dielectric);
+  mesh["skin_depth_layers"] = optional_value(study.height_bounds.skin_depth_layers);
+  mesh["height_growth"] = optional_value(study.height_bounds.height_growth);
+  mesh["target_quality"] = optional_value(study.match.target_quality);
+  mesh["budget_prisms"] = optional_value(study.match.budget_prisms);
+  mesh["budget_unknowns"] = optional_value(study.match.budget_unknowns);
+  mesh["paper_compat"] = study.paper_compat;
   mesh["tolerance"] = optional_length(study.tolerance);
   root["arcs"] = Json{{"sagitta", exact_length(study.arcs.sagitta_nm)}, {"mode", name_in(arc_names, study.arcs.mode)}};
   root["output"] = Json{{"unit", name_of(study.unit)},

@@ -70,7 +70,9 @@ TEST(Study, EveryFieldIsRead) {
     "air": {"above": 3, "below": "0mm", "around": "12mil"},
     "mesh": {"frequency": "10GHz", "longest_edge": 0.5, "min_angle_deg": 25, "edge_at_copper": "50um", "growth": 0.4,
              "seed": "delaunay", "smooth": true,
-             "height_policy": "minimum", "sublayers": "floor", "tolerance": "7um"},
+             "height_policy": "matched", "sublayers": "floor", "elements_per_wavelength": 12.5, "elements_per_dielectric": 3,
+             "skin_depth_layers": 2, "height_growth": 1.8, "target_quality": 0.8, "budget_prisms": 1e6,
+             "budget_unknowns": 3e6, "paper_compat": false, "tolerance": "7um"},
     "arcs": {"sagitta": "1um", "mode": "octagon"}, "output": {"unit": "mm"}, "limits": {"max_prisms": 2e6})");
   EXPECT_EQ(s.region, RegionKind::nets);
   EXPECT_EQ(s.nets, (std::vector<std::string>{"A", "/B,c"}));
@@ -90,7 +92,9 @@ TEST(Study, EveryFieldIsRead) {
   EXPECT_EQ(s.edge_at_copper, 50'000);
   EXPECT_EQ(s.growth, 0.4);
   EXPECT_TRUE(s.smooth);
-  EXPECT_EQ(s.policy, HeightPolicy::minimum);
+  EXPECT_EQ(s.policy, HeightPolicy::matched);
+  EXPECT_EQ(s.height_bounds, (HeightBounds{12.5, 3, 2, 1.8}));
+  EXPECT_EQ(s.match, (MatchGoal{0.8, 1'000'000, 3'000'000}));
   EXPECT_EQ(s.sublayers, SublayerRule::floor);
   EXPECT_EQ(s.tolerance, 7'000);
   EXPECT_EQ(s.arcs.sagitta_nm, 1'000);
@@ -109,33 +113,50 @@ TEST(Study, RegionKindFollowsFromWhatIsGiven) {
   expect_field_error(R"("region": {"nets": ["A"], "box": {"min": [0, 0], "max": [1, 1]}})", {"/region", "kind"});
 }
 
-TEST(Study, PaperCaseNumbersArePolicies) {
-  const HeightPolicy cases[] = {HeightPolicy::basic, HeightPolicy::average, HeightPolicy::maximum, HeightPolicy::minimum,
-                                HeightPolicy::thinnest_layer};
-  for (int i = 1; i <= 5; ++i) {
+TEST(Study, BoundsOnHeightsAndGoalsAreChecked) {
+  EXPECT_TRUE(parse(R"("mesh": {"paper_compat": true, "height_policy": 4})").paper_compat);
+  expect_field_error(R"("mesh": {"elements_per_wavelength": 0.5})", {"/mesh/elements_per_wavelength", "1 to 1000"});
+  expect_field_error(R"("mesh": {"elements_per_dielectric": 0})", {"/mesh/elements_per_dielectric"});
+  expect_field_error(R"("mesh": {"elements_per_dielectric": 1e12})", {"/mesh/elements_per_dielectric"});
+  expect_field_error(R"("mesh": {"elements_per_dielectric": 2.5})", {"/mesh/elements_per_dielectric", "whole"});
+  expect_field_error(R"("mesh": {"skin_depth_layers": 2})", {"/mesh/skin_depth_layers", "frequency"});
+  expect_field_error(R"("mesh": {"height_growth": 1})", {"/mesh/height_growth", "1.1"});
+  expect_field_error(R"("mesh": {"height_policy": 7, "target_quality": 1.5})", {"/mesh/target_quality"});
+  expect_field_error(R"("mesh": {"height_policy": 7, "budget_prisms": 0})", {"/mesh/budget_prisms"});
+  expect_field_error(R"("mesh": {"target_quality": 0.8})", {"/mesh/height_policy", "matched", "average"});
+  expect_field_error(R"("mesh": {"paper_compat": true, "seed": "hex"})", {"/mesh/paper_compat"});
+  expect_field_error(R"("mesh": {"paper_compat": true, "height_policy": "weighted"})", {"/mesh/paper_compat"});
+  expect_field_error(R"("mesh": {"paper_compat": true, "height_growth": 2})", {"/mesh/paper_compat"});
+}
+
+TEST(Study, PolicyNumbersArePolicies) {
+  const HeightPolicy cases[] = {HeightPolicy::basic,   HeightPolicy::average,        HeightPolicy::maximum,
+                                HeightPolicy::minimum, HeightPolicy::thinnest_layer, HeightPolicy::weighted,
+                                HeightPolicy::matched};
+  for (int i = 1; i <= 7; ++i) {
     EXPECT_EQ(parse_height_policy(std::to_string(i)), cases[i - 1]);
     EXPECT_EQ(parse(fmt::format(R"("mesh": {{"height_policy": {}}})", i)).policy, cases[i - 1]);
     EXPECT_EQ(parse(fmt::format(R"("mesh": {{"height_policy": "{}"}})", i)).policy, cases[i - 1]);
   }
-  for (const char* wrong : {"0", "6", "", "Basic", "1.0"}) EXPECT_THROW((void)parse_height_policy(wrong), Error) << wrong;
-  expect_field_error(R"("mesh": {"height_policy": 6})", {"/mesh/height_policy", "basic, average"});
+  for (const char* wrong : {"0", "8", "", "Basic", "1.0"}) EXPECT_THROW((void)parse_height_policy(wrong), Error) << wrong;
+  expect_field_error(R"("mesh": {"height_policy": 8})", {"/mesh/height_policy", "basic, average"});
 }
 
 TEST(Study, NamesAndParsersAreInverse) {
   for (HeightPolicy v : {HeightPolicy::none, HeightPolicy::basic, HeightPolicy::average, HeightPolicy::maximum,
-                         HeightPolicy::minimum, HeightPolicy::thinnest_layer})
+                         HeightPolicy::minimum, HeightPolicy::thinnest_layer, HeightPolicy::weighted, HeightPolicy::matched})
     EXPECT_EQ(parse_height_policy(name_of(v)), v);
   for (SublayerRule v :
        {SublayerRule::floor, SublayerRule::round, SublayerRule::ceil, SublayerRule::none, SublayerRule::optimal})
     EXPECT_EQ(parse_sublayer_rule(name_of(v)), v);
-  for (ConductorMode v : {ConductorMode::solid, ConductorMode::hollow}) EXPECT_EQ(parse_conductor_mode(name_of(v)), v);
+  for (ConductorMode v : {ConductorMode::solid, ConductorMode::hollow, ConductorMode::sheet}) EXPECT_EQ(parse_conductor_mode(name_of(v)), v);
   EXPECT_EQ(name_of(RegionKind::box), "box");
   try {
     (void)parse_conductor_mode("holow");
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::usage);
-    EXPECT_NE(error.text().find("solid, hollow; did you mean 'hollow'?"), std::string::npos) << error.text();
+    EXPECT_NE(error.text().find("solid, hollow, sheet; did you mean 'hollow'?"), std::string::npos) << error.text();
   }
 }
 
@@ -168,7 +189,16 @@ TEST(Study, RoundTripIsExactForRandomStudies) {
     s.growth = real(0.01, 10);
     if (!s.edge_at_copper) s.seed = static_cast<TriangleSeed>(upto(1));
     s.smooth = upto(1) == 1;
-    s.policy = static_cast<HeightPolicy>(upto(5));
+    s.policy = static_cast<HeightPolicy>(upto(7));
+    s.height_bounds.elements_per_wavelength = real(1, 1000);
+    if (upto(1) == 1) s.height_bounds.elements_per_dielectric = static_cast<int>(1 + upto(999));
+    if (s.frequency_hz && upto(1) == 1) s.height_bounds.skin_depth_layers = static_cast<int>(1 + upto(19));
+    if (upto(1) == 1) s.height_bounds.height_growth = real(1.1, 100);
+    if (s.policy == HeightPolicy::matched) {
+      if (upto(1) == 1) s.match.target_quality = real(0.01, 1.02);
+      if (upto(1) == 1) s.match.budget_prisms = 1 + upto(std::int64_t{1} << 60);
+      if (upto(1) == 1) s.match.budget_unknowns = 1 + upto(std::int64_t{1} << 60);
+    }
     s.sublayers = static_cast<SublayerRule>(upto(5));
     s.arcs = {1 + upto(999'999), static_cast<geometry::ArcMode>(upto(3))};
     s.unit = static_cast<LengthUnit>(upto(2));
@@ -183,7 +213,7 @@ TEST(Study, RoundTripIsExactForRandomStudies) {
 
 TEST(Study, EqualityLooksAtEveryField) {
   const Study base;
-  std::vector<Study> others(22);
+  std::vector<Study> others(30);
   std::size_t i = 0;
   others[i++].region = RegionKind::box;
   others[i++].nets = {"A"};
@@ -203,6 +233,14 @@ TEST(Study, EqualityLooksAtEveryField) {
   others[i++].smooth = true;
   others[i++].policy = HeightPolicy::none;
   others[i++].sublayers = SublayerRule::none;
+  others[i++].height_bounds.elements_per_wavelength = 4;
+  others[i++].height_bounds.elements_per_dielectric = 1;
+  others[i++].height_bounds.skin_depth_layers = 1;
+  others[i++].height_bounds.height_growth = 2;
+  others[i++].match.target_quality = 0.5;
+  others[i++].match.budget_prisms = 1;
+  others[i++].match.budget_unknowns = 1;
+  others[i++].paper_compat = true;
   others[i++].tolerance = 1;
   others[i++].arcs.sagitta_nm = 1;
   others[i++].arcs.mode = geometry::ArcMode::octagon;

@@ -38,11 +38,13 @@ enum class ErrorCode : int {
   stackup_invalid = 303,        ///< stackup can't be used (zero thickness, missing copper)
   name_unknown = 304,           ///< a net or layer named by the study is not on the board
   region_empty = 305,           ///< the region of interest holds nothing
+  port_invalid = 306,           ///< a port of the study can't be placed on the board
   overlay_topology = 401,       ///< nets would open or short at every tolerance tried
   overlay_no_fixpoint = 402,    ///< noding did not settle
   planar_crossing_edges = 403,  ///< graph handed to the triangulation has crossing edges
   triangulation_limit = 404,    ///< vertex cap reached
   layering_invalid = 501,       ///< heights or sub-layers can't be chosen
+  target_unreachable = 502,     ///< no mesh within the budget meets the goal of policy matched
   prism_limit = 601,            ///< forecast exceeds the user's budget
   write_failed = 701,           ///< file can't be written; nothing was left behind
   format_not_built = 702,       ///< the format needs a library this build lacks

@@ -12,7 +12,8 @@
 
 namespace pcbmesh::layering {
 
-/// The paper's CALCULATE_PRISM_HEIGHT: common height h for one policy, metres; nullopt for policy none.
+/// The paper's CALCULATE_PRISM_HEIGHT: common height h for one policy, metres; nullopt for policies none and
+/// matched, which have no common height.
 /// Thinnest layer means thinnest board slab: air does not count. @throws Error layering_invalid (501) where there is no board
 /// slab, or no triangle to take heights from.
 [[nodiscard]] std::optional<double> common_height_m(study::HeightPolicy policy, const HeightStatistics& heights,
@@ -32,7 +33,16 @@ namespace pcbmesh::layering {
 /// look at the volume-weighted one too. @throws Error layering_invalid (501) without heights. @cost O(layers x cuts x bins).
 [[nodiscard]] std::vector<int> best_mean_counts(std::span<const double> layer_heights_m, const HeightStatistics& final_heights);
 
-/// z levels for all slabs. `common_height_m` empty: one sub-layer per slab unless the rule is optimal or best_mean.
+/// Sub-layers of each slab by the rule. `common_height_m` empty: one per slab unless the rule is optimal or best_mean.
+[[nodiscard]] std::vector<int> sublayer_counts(std::span<const model::Slab> slabs, study::SublayerRule rule,
+                                               std::optional<double> common_height_m, const HeightStatistics& final_heights);
+
+/// Sub-layers of each slab as the paper's tables imply: case 1 (basic) takes the floor of a quotient of z differences in single
+/// precision, so that 0.4 over 0.1 mm may be 3; in cases 2 to 5 layers stay whole. z counts from the lowest slab's bottom.
+[[nodiscard]] std::vector<int> paper_counts(std::span<const model::Slab> slabs, study::HeightPolicy policy,
+                                            double common_height_m);
+
+/// z levels for all slabs by `sublayer_counts` alone, without the bounds of a field solver.
 /// Levels are equally spaced in a slab, and slab faces are exactly its z in metres.
 /// @throws Error layering_invalid (501) if a count exceeds 1,000,000, or all together exceed 10,000,000.
 [[nodiscard]] mesh::LayerPlan choose_layers(std::span<const model::Slab> slabs, study::SublayerRule rule,

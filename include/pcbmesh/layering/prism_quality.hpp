@@ -37,13 +37,17 @@ inline constexpr double max_prism_quality = 1.0264004785593347;
 
 /// Triangles of about the same optimal height: best quality in sum and the mean height.
 struct HeightBin {
-  double height = 0;       ///< mean, metres
-  double sum_quality = 0;  ///< of the prism quality at the optimal height
+  double height = 0;            ///< mean, metres
+  double sum_quality = 0;       ///< of the prism quality at the optimal height
+  double count = 0;             ///< triangles
+  double area_m2 = 0;           ///< of the triangles
+  double sum_area_quality = 0;  ///< of area times quality at the optimal height
 };
 
 /// Optimal heights over a planar mesh, metres.
 struct HeightStatistics {
   double minimum = 0, average = 0, maximum = 0;
+  double weighted = 0;  ///< sum of q*/h* over sum of q*/h*^2: where the parabolas of F8, added up, are highest
   double mean_triangle_quality = 0;
   std::int64_t num_below_average = 0;
   std::int64_t num_triangles = 0;
@@ -52,8 +56,9 @@ struct HeightStatistics {
 /// All zero for a mesh without triangles. @cost O(triangles).
 [[nodiscard]] HeightStatistics height_statistics(const mesh::PlanarMesh& mesh);
 
-/// Mean over the triangles of the prism quality at one height. @cost O(bins).
+/// Mean over the triangles, and over their area, of the prism quality at one height. @cost O(bins).
 [[nodiscard]] double mean_quality_at(const HeightStatistics& heights, double height);
+[[nodiscard]] double area_quality_at(const HeightStatistics& heights, double height);
 
 /// Quality of a whole prism mesh. Void cells do not count; a planar triangle counts once if any prism stands on it.
 struct QualityStatistics {

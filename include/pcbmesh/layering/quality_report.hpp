@@ -39,11 +39,11 @@ struct QualityHistogram {
   std::vector<std::int64_t> counts;
 };
 
-/// A bad prism and where to look for it. The sub-layers of a slab are equal, so it stands for all of them.
+/// A bad prism and where to look for it. It stands for all sub-layers of its height in its slab.
 struct WorstPrism {
   double quality = 0;
   std::array<double, 2> at_m{};  ///< centroid of the triangle
-  double z_m = 0;                ///< middle of the slab
+  double z_m = 0;                ///< middle of the lowest of these sub-layers
   double height_m = 0;
   std::int32_t triangle = 0, slab = 0, num_sublayers = 0;
   std::string group;  ///< volume tag, "layer|material|net"
@@ -55,8 +55,8 @@ struct QualityReport {
   std::vector<WorstPrism> worst;                      ///< by quality, then slab, then triangle
 };
 
-/// Void cells do not count. Heights of the sub-layers of one slab are taken as equal, as choose_layers makes them.
-/// @cost O(triangles x slabs); memory O(volume tags).
+/// Void cells do not count. Heights that differ by less than 1e-9 of themselves are one.
+/// @cost O(triangles x (slabs + distinct heights per slab)); memory O(volume tags).
 [[nodiscard]] QualityReport quality_report(const mesh::PrismMesh& mesh, int num_worst = 10);
 
 }  // namespace pcbmesh::layering

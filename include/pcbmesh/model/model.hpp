@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -30,19 +32,30 @@ enum class BodyKind {
   board,   ///< body 1: inside of the board outline, cut-outs excluded
   copper,  ///< tracks, pads, fills of one net on one copper slab
   hole,    ///< unplated hole: material of the body (air), or void if material is -1
-  barrel   ///< plated hole: filled with copper of its net
+  barrel,  ///< plated hole: filled with copper of its net
+  port     ///< footprint of a port: fills nothing, its edges are kept straight
 };
 
-/// A plane set extruded through a contiguous range of slabs; its shapes are drawn in `shapes`.
+/// Where a conductor without thickness lies.
+struct SheetPlace {
+  std::int32_t face = 0;  ///< face f is the bottom of slab f; face num_slabs is the top of the last slab
+  std::string layer;      ///< its copper layer, which may have no slab
+  Nm thickness_nm = 0;    ///< of the copper it stands for
+  bool operator==(const SheetPlace&) const = default;
+};
+
+/// A plane set extruded through a contiguous range of slabs; its shapes are drawn in `shapes`. A sheet is at one face instead,
+/// and its slabs are a slab beside that face.
 struct Body {
   std::string name;  ///< for messages, e.g. "copper GND on F.Cu"
   BodyKind kind = BodyKind::copper;
   std::int32_t material = -1;
   std::int32_t net = board::no_net;
-  std::int32_t first_slab = 0;  ///< lowest slab
-  std::int32_t last_slab = 0;   ///< highest slab, >= first_slab
-  std::int32_t priority = 0;    ///< the highest present wins; ties: the lower body index
-  bool hollow = false;          ///< not meshed, skin tagged surface|net
+  std::int32_t first_slab = 0;        ///< lowest slab
+  std::int32_t last_slab = 0;         ///< highest slab, >= first_slab
+  std::int32_t priority = 0;          ///< the highest present wins; ties: the lower body index
+  bool hollow = false;                ///< not meshed, skin tagged surface|net
+  std::optional<SheetPlace> sheet{};  ///< copper: no thickness, its faces tagged sheet|net
   bool operator==(const Body&) const = default;
 };
 
@@ -53,6 +66,40 @@ struct BodyShape {
   bool simple = true;                 ///< false: winding may be negative; the overlay normalises it on its own
   std::int64_t line = 0;              ///< in the board file
   bool operator==(const BodyShape&) const = default;
+};
+
+/// What holds on a side of the domain.
+enum class SideKind { none, absorbing, pec, pmc, impedance };
+struct SideCondition {
+  SideKind kind = SideKind::none;
+  double ohms = 0;  ///< kind impedance
+  bool operator==(const SideCondition&) const = default;
+};
+/// Sides in this order: xmin, xmax, ymin, ymax, zmin, zmax, and all other outer walls.
+inline constexpr std::size_t num_sides = 7;
+
+enum class PortFaces {
+  wall,  ///< upright: over the part of the footprint's edge that is `line`, through the footprint's slabs
+  cap    ///< flat: the footprint at face `face`
+};
+
+/// Port between two conductors, or on the hull.
+struct Port {
+  std::string name;
+  std::int64_t study_index = 0;  ///< place in the study's list, for messages
+  bool is_wave = false;
+  double impedance_ohm = 50;
+  bool is_excited = true;
+  std::int32_t positive_net = board::no_net;
+  std::int32_t negative_net = board::no_net;
+  std::int32_t body = 0;  ///< its footprint
+  PortFaces faces = PortFaces::wall;
+  std::array<geometry::Point, 2> line{};     ///< wall: the segment it stands on
+  std::int32_t face = 0;                     ///< cap
+  std::array<double, 3> direction{0, 0, 1};  ///< from the negative to the positive terminal
+  double length_m = 0;                       ///< along direction
+  double width_m = 0;                        ///< across
+  std::array<double, 3> at_m{};              ///< middle
 };
 
 struct ModelParts {
@@ -66,6 +113,9 @@ struct ModelParts {
   Nm narrowest_feature_nm = 0;                 ///< smallest pen, hole or pad width of the copper in the domain; 0 = unknown
   Nm narrowest_of_interest_nm = 0;             ///< the same for nets_of_interest
   std::vector<geometry::OutlineCircle> circles{};  ///< that outlines may follow, ascending; only if the study asks for order 2
+  std::vector<Port> ports;
+  std::array<SideCondition, num_sides> sides{};
+  bool conductors_are_perfect = false;  ///< hollow and sheet conductors: PEC, not lossy copper
 };
 
 /// What fills one cell: region x slab.
@@ -83,6 +133,7 @@ struct Label {
 /// @guarantee M2  bodies[0] is the domain and bodies[1] the board, both through all slabs; every body names existing slabs,
 /// materials, nets
 /// @guarantee M3  every shape names an existing body and has at least one ring
+/// @guarantee M4  bodies of ports come last; every port has one, and every such body a port
 class Model {
  public:
   /// @throws Error internal (901) when an invariant is broken: only compose() builds models.
@@ -98,6 +149,11 @@ class Model {
   [[nodiscard]] std::span<const geometry::OutlineCircle> circles() const { return parts_->circles; }
   [[nodiscard]] Nm narrowest_feature_nm() const { return parts_->narrowest_feature_nm; }
   [[nodiscard]] Nm narrowest_of_interest_nm() const { return parts_->narrowest_of_interest_nm; }
+  [[nodiscard]] std::span<const Port> ports() const { return parts_->ports; }
+  /// Index of the first port's body; the number of bodies if there is no port.
+  [[nodiscard]] std::int32_t first_port_body() const;
+  [[nodiscard]] const std::array<SideCondition, num_sides>& sides() const { return parts_->sides; }
+  [[nodiscard]] bool conductors_are_perfect() const { return parts_->conductors_are_perfect; }
 
   /// Net name, or "no net".
   [[nodiscard]] std::string_view net_name(std::int32_t net) const;
@@ -106,8 +162,13 @@ class Model {
   /// Outside the domain: void. Outside the board: slab.outside. Else the body of highest priority, else slab.material.
   /// @cost O(present).
   [[nodiscard]] Label resolve(std::int32_t slab, std::span<const std::int32_t> present) const;
+  /// Sheet at face `face` where exactly the bodies `present` cover the plane: its index, or -1. Copper, barrels, holes and
+  /// cut-outs beside the face take its place. @cost O(present).
+  [[nodiscard]] std::int32_t sheet_at(std::int32_t face, std::span<const std::int32_t> present) const;
 
  private:
+  /// Body of highest priority in a slab, or -1.
+  [[nodiscard]] std::int32_t top_body(std::int32_t slab, std::span<const std::int32_t> present) const;
   std::shared_ptr<const ModelParts> parts_;
 };
 

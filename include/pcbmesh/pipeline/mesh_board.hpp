@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,9 +9,11 @@
 #include "pcbmesh/base/progress.hpp"
 #include "pcbmesh/board/board.hpp"
 #include "pcbmesh/geometry/path.hpp"
+#include "pcbmesh/layering/divide_layers.hpp"
 #include "pcbmesh/layering/prism_quality.hpp"
 #include "pcbmesh/mesh/prism_mesh.hpp"
 #include "pcbmesh/overlay/overlay.hpp"
+#include "pcbmesh/pipeline/match_quality.hpp"
 #include "pcbmesh/study/study.hpp"
 #include "pcbmesh/triangulate/triangulate.hpp"
 
@@ -28,9 +31,12 @@ struct MeshBoardResult {
   overlay::OverlayStatistics overlay;
   std::vector<overlay::SnapRecord> ledger;
   triangulate::TriangulateStatistics triangulate;
-  layering::HeightStatistics heights;  ///< of the final planar mesh
-  double common_height_m = 0;          ///< 0 = none
-  bool fed_back = false;               ///< the common height became the longest edge
+  layering::HeightStatistics heights;         ///< of the final planar mesh
+  double common_height_m = 0;                 ///< 0 = none
+  bool fed_back = false;                      ///< the common height became the longest edge
+  double longest_edge_m = 0;                  ///< bound of the final triangulation
+  std::vector<layering::LayerChoice> layers;  ///< per slab: how it is cut, and why
+  std::optional<MatchResult> match;           ///< policy matched
   layering::QualityStatistics quality;
   Diagnostics diagnostics;
   std::vector<StepTime> times;

@@ -43,14 +43,16 @@ struct ConductorRule {
   bool operator==(const ConductorRule&) const = default;
 };
 
-/// Common prism height h, the paper's CALCULATE_PRISM_HEIGHT. Policies 2 to 5 feed h back as longest edge when h is smaller.
+/// Common prism height h, the paper's CALCULATE_PRISM_HEIGHT. Policies 2 to 6 feed h back as longest edge when h is smaller.
 enum class HeightPolicy {
-  none,           ///< our own: no common height; every slab stays one sub-layer unless `sublayers` says otherwise
-  basic,          ///< case 1: h = thinnest layer, no feedback
-  average,        ///< case 2: mean optimal height
-  maximum,        ///< case 3: largest optimal height
-  minimum,        ///< case 4: smallest optimal height
-  thinnest_layer  ///< case 5: thinnest layer, with feedback
+  none,            ///< our own: no common height; every slab stays one sub-layer unless `sublayers` says otherwise
+  basic,           ///< case 1: h = thinnest layer, no feedback
+  average,         ///< case 2: mean optimal height
+  maximum,         ///< case 3: largest optimal height
+  minimum,         ///< case 4: smallest optimal height
+  thinnest_layer,  ///< case 5: thinnest layer, with feedback
+  weighted,        ///< 6, our own: heights averaged by how much quality a triangle loses off its own (F8 of the evidence)
+  matched          ///< 7, our own: longest edge and counts together, for a target of quality or a budget
 };
 
 /// What the triangulation starts from.
@@ -73,6 +75,23 @@ enum class SublayerRule {
   none,      ///< one sub-layer per layer
   optimal,   ///< exact thresholds F10 on the final mesh's mean optimal height
   best_mean  ///< the counts of greatest plain mean quality on the final mesh (Dinkelbach); the plain mean can be gamed
+};
+
+/// What a field solver asks of the heights, whatever the policy chose. Unset = no such bound.
+struct HeightBounds {
+  double elements_per_wavelength = 3;          ///< in the local material, heights and longest edge; needs a frequency
+  std::optional<int> elements_per_dielectric;  ///< at least so many sub-layers in every dielectric
+  std::optional<int> skin_depth_layers;        ///< so many sub-layers in the first skin depth below a face of meshed copper
+  std::optional<double> height_growth;         ///< largest ratio of neighbouring sub-layers; 2 if skin_depth_layers is set
+  bool operator==(const HeightBounds&) const = default;
+};
+
+/// What policy matched aims at: the fewest prisms of a quality, or the best quality of a budget; with neither, the knee.
+struct MatchGoal {
+  std::optional<double> target_quality;         ///< mean and volume-weighted q_p at least this
+  std::optional<std::int64_t> budget_prisms;    ///< at most so many prisms
+  std::optional<std::int64_t> budget_unknowns;  ///< at most so many edges: unknowns of the lowest edge elements
+  bool operator==(const MatchGoal&) const = default;
 };
 
 /// What the engineer wants to know about a board: everything that steers the mesh. Plain values; parse and
@@ -101,7 +120,10 @@ struct Study {
   TriangleSeed seed = TriangleSeed::delaunay;  ///< hex excludes edge_at_copper
   bool smooth = false;                         ///< guarded smoothing of the triangles
   HeightPolicy policy = HeightPolicy::average;
-  SublayerRule sublayers = SublayerRule::optimal;
+  SublayerRule sublayers = SublayerRule::optimal;  ///< not used by policy matched, which chooses the counts itself
+  HeightBounds height_bounds;
+  MatchGoal match;              ///< policy matched only
+  bool paper_compat = false;    ///< the rules the paper's tables imply: docs/decisions/0007
   std::optional<Nm> tolerance;  ///< empty = auto
   geometry::ArcOptions arcs{};
   LengthUnit unit = LengthUnit::metre;
@@ -127,7 +149,7 @@ struct Study {
 [[nodiscard]] std::string_view name_of(SublayerRule value);
 [[nodiscard]] std::string_view name_of(TriangleSeed value);
 [[nodiscard]] std::string_view name_of(ElementSplit value);
-/// Inverse of name_of; the paper's case numbers "1" to "5" are policies too. @throws Error usage (101) listing the choices.
+/// Inverse of name_of; the numbers "1" to "7" are policies too. @throws Error usage (101) listing the choices.
 [[nodiscard]] HeightPolicy parse_height_policy(std::string_view text);
 [[nodiscard]] SublayerRule parse_sublayer_rule(std::string_view text);
 [[nodiscard]] TriangleSeed parse_triangle_seed(std::string_view text);

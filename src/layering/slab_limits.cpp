@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "pcbmesh/base/error.hpp"
+#include "pcbmesh/layering/divide_layers.hpp"
+
+namespace pcbmesh::layering {
+namespace {
+
+constexpr double speed_of_light_m_per_s = 299'792'458.0;
+constexpr double vacuum_permeability = 4e-7 * std::numbers::pi;
+constexpr double default_growth = 2;
+
+double skin_depth_m(const board::Material& metal, double frequency_hz, const model::Slab& slab) {
+  if (metal.sigma_s_per_m > 0)
+    return 1.0 / std::sqrt(std::numbers::pi * frequency_hz * vacuum_permeability * metal.mu_r * metal.sigma_s_per_m);
+  Spot spot;
+  spot.layer = slab.layer;
+  throw Error(ErrorCode::layering_invalid,
+              fmt::format("the skin depth is asked for, but '{}' has conductivity {} S/m; give its sigma in the board file, or "
+                          "leave out --skin-depth-layers",
+                          metal.name, metal.sigma_s_per_m),
+              spot);
+}
+
+}  // namespace
+
+double slowness(const model::Model& model, const model::Slab& slab) {
+  double slowest = 1;
+  for (const std::int32_t material : {slab.material, slab.outside}) {
+    if (material < 0) continue;
+    const board::Material& m = model.materials()[static_cast<std::size_t>(material)];
+    slowest = std::max(slowest, m.eps_r * m.mu_r);
+  }
+  return std::sqrt(slowest);
+}
+
+std::vector<SlabLimits> slab_limits(const model::Model& model, const study::Study& study) {
+  const study::HeightBounds& bounds = study.height_bounds;
+  std::vector<SlabLimits> limits(model.slabs().size());
+  for (std::size_t s = 0; s < limits.size(); ++s) {
+    const model::Slab& slab = model.slabs()[s];
+    if (study.frequency_hz)
+      limits[s].wavelength_height_m =
+          speed_of_light_m_per_s / *study.frequency_hz / slowness(model, slab) / bounds.elements_per_wavelength;
+    if (slab.kind == model::SlabKind::dielectric) limits[s].least_count = bounds.elements_per_dielectric.value_or(1);
+  }
+  if (!bounds.skin_depth_layers || !study.frequency_hz) return limits;
+  // Hollow copper holds no field, so it asks for nothing; barrels are upright walls, which heights do not resolve.
+  for (const model::Body& body : model.bodies()) {
+    if (body.kind != model::BodyKind::copper || body.hollow || body.material < 0) continue;
+    for (std::int32_t s = body.first_slab; s <= body.last_slab; ++s) {
+      SlabLimits& limit = limits[static_cast<std::size_t>(s)];
+      const double depth = skin_depth_m(model.materials()[static_cast<std::size_t>(body.material)], *study.frequency_hz,
+                                        model.slabs()[static_cast<std::size_t>(s)]);
+      limit.skin_depth_m = limit.skin_depth_m > 0 ? std::min(limit.skin_depth_m, depth) : depth;
+    }
+  }
+  // h (1 + r + ... + r^(n-1)) = depth
+  const double r = bounds.height_growth.value_or(default_growth);
+  for (SlabLimits& limit : limits)
+    if (limit.skin_depth_m > 0)
+      limit.face_height_m = limit.skin_depth_m * (r - 1) / (std::pow(r, *bounds.skin_depth_layers) - 1);
+  return limits;
+}
+
+}  // namespace pcbmesh::layering
