@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/abaqus/read_inp.hpp"
 #include "formats/elements/element_walk.hpp"
 #include "formats/face_parents/face_parents.hpp"
 
@@ -130,7 +131,7 @@ constexpr KindSet faces = kind_set(triangle, quadrangle, triangle6, quadrangle8)
 
 }  // namespace
 
-constinit const MeshFormat mesh_format{"abaqus", "Abaqus and CalculiX input", extensions, write, nullptr,
-                                       {.written = solids | faces, .readable = 0, .has_tags = true, .has_names = true}};
+constinit const MeshFormat mesh_format{"abaqus", "Abaqus and CalculiX input", extensions, write, read_inp,
+                                       {.written = solids | faces, .readable = solids | faces, .has_tags = true, .has_names = true}};
 
 }  // namespace pcbmesh::formats::abaqus

@@ -105,7 +105,7 @@ Command add_check_command(CLI::App& program) {
   CLI::App* command =
       program.add_subcommand("check", "Judge a mesh: conformity, volumes, tags, nets; exit code 1 with findings");
   auto options = std::make_shared<Options>();
-  command->add_option("mesh", options->mesh, "Mesh file (.msh)");
+  command->add_option("mesh", options->mesh, "Mesh file (.msh, .mesh; .gz and .xz are unpacked)");
   command->add_option("--tags", options->tags, "tags.json to check against (default: the one beside the mesh)");
   command->add_flag("--no-tags", options->no_tags, "Check only what the mesh itself promises");
   command->add_option("--format", options->format, "Format of the mesh (default: by content and name)");

@@ -43,6 +43,18 @@ Json ledger_json(const std::vector<overlay::SnapRecord>& ledger) {
   return out;
 }
 
+/// Size of a file, or of all files of a folder.
+double megabytes_of(const std::filesystem::path& file) {
+  std::error_code ignored;
+  std::uintmax_t bytes = 0;
+  if (std::filesystem::is_directory(file, ignored)) {
+    for (const auto& entry : std::filesystem::directory_iterator(file, ignored)) bytes += entry.file_size(ignored);
+  } else {
+    bytes = std::filesystem::file_size(file, ignored);
+  }
+  return static_cast<double>(bytes) * 1e-6;
+}
+
 }  // namespace
 
 std::string report_json(const MeshRun& run) {
@@ -156,11 +168,7 @@ std::string report_text(const MeshRun& run) {
       out += fmt::format("    {} [{}] {}\n", f.severity == validation::FindingSeverity::error ? "error" : "warning", f.code,
                          f.text);
   }
-  for (const std::string& file : run.files) {
-    std::error_code ignored;
-    out += line("wrote",
-                fmt::format("{} ({:.1f} MB)", file, static_cast<double>(std::filesystem::file_size(file, ignored)) * 1e-6));
-  }
+  for (const std::string& file : run.files) out += line("wrote", fmt::format("{} ({:.1f} MB)", file, megabytes_of(file)));
   return out;
 }
 

@@ -92,11 +92,22 @@ def main():
         for key in ((2, "none", 15), (2, "tets", 18)):
             expect(all(close(found[key][0][tag], found[2, "none", 18][0][tag], 1e-12) for tag in plain), f"{key}: volumes differ")
         check_barrel(found, made)
+        again = pathlib.Path(name) / "again.msh"
+        run("mesh", pathlib.Path(name) / "round.json", "--study", made[2, "none", 15][0].with_suffix(".resolved.json"), "-o", again)
+        expect(again.read_bytes() == made[2, "none", 15][0].read_bytes(), "the resolved study repeats order and kind of wedges")
+        check_refusals(pathlib.Path(name))
         check_circles(found[2, "none", 18][2], points)
     gmsh.finalize()
     for fault in faults:
         print("FAULT:", fault)
     return 1 if faults else 0
+
+
+def check_refusals(folder):
+    for options, word in ((["--order", "3"], "order 3"), (["--split", "hexes"], "unknown split"), (["--order", "2", "--split", "tets", "--wedge15"], "18 nodes")):
+        done = run("mesh", folder / "round.json", "-o", folder / "no.msh", *options)
+        expect(done.returncode in (2, 3) and word in done.stderr, f"{options}: exit {done.returncode}, {done.stderr}")
+        expect(not (folder / "no.msh").exists(), f"{options}: a mesh was written")
 
 
 def check_barrel(found, made):

@@ -219,7 +219,7 @@ TEST(SecondOrderSource, ChordsBendOntoTheirCircle_Q2) {
   // Corners and middles on three levels, verticals and faces in two sub-layers.
   EXPECT_EQ(num_on_circle, 3 * (16 + 16) + 2 * (16 + 16));
   // Another circle, a circle with too long chords, a circle the ends miss: nothing bends.
-  for (const Circle& other : {Circle{{5e-3, 0}, radius}, Circle{{0, 0}, radius * 1.001}}) {
+  for (const Circle& other : {Circle{{5e-3, 0}, radius}, Circle{{0, 0}, radius * 1.003}}) {
     options.circles = {other};
     EXPECT_EQ(SecondOrderSource(mesh, options).statistics().num_curved_edges, 0);
   }
