@@ -99,8 +99,9 @@ std::shared_ptr<StudyOptions> add_study_options(CLI::App& command) {
   command.add_option("--unit", o->unit, "Unit written to the mesh: m (default), mm, um")->group(sizes);
   command.add_option("--split", o->split, "Write tets: three tetrahedra per prism, same nodes and tags")->group(sizes);
   command.add_option("--order", o->order, "Order of the elements, 1 (default) or 2: arcs of the layout become curved")->group(sizes);
-  command.add_flag("--wedge15,!--wedge18", o->wedge15, "Order 2: prisms of 15 nodes instead of 18 (CalculiX, Elmer, Nastran)")
-      ->group(sizes);
+  CLI::Option* wedge15 =
+      command.add_flag("--wedge15", o->wedge15, "Order 2: prisms of 15 nodes (CalculiX, Elmer, Nastran)")->group(sizes);
+  command.add_flag("--wedge18", o->wedge18, "Order 2: prisms of 18 nodes (default)")->excludes(wedge15)->group(sizes);
   command.add_option("--max-prisms", o->max_prisms, "Refuse a mesh larger than this (default 2e8)")->group(sizes);
   return o;
 }
@@ -155,7 +156,7 @@ study::Study study_from(const StudyOptions& o) {
   if (!o.unit.empty()) s.unit = parse_length_unit(o.unit);
   if (!o.split.empty()) s.split = study::parse_element_split(o.split);
   if (o.order != 0) s.order = o.order;
-  if (o.wedge15) s.wedge_nodes = *o.wedge15 ? 15 : 18;
+  if (o.wedge15 || o.wedge18) s.wedge_nodes = o.wedge15 ? 15 : 18;
   if (o.max_prisms != 0) s.max_prisms = count("--max-prisms", o.max_prisms);
   take_physics_options(o, s);
   study::check(s);

@@ -17,7 +17,7 @@ struct StudyOptions {
       edge_at_copper, seed, policy, sublayers, tolerance, arc_sagitta, unit, split, problem, solver, sweep;
   std::vector<std::string> hollow, solid, sheet, ports, boundaries;
   bool smooth = false, paper_compat = false;
-  std::optional<bool> wedge15;
+  bool wedge15 = false, wedge18 = false;
   int order = 0;
   double min_angle = 0, growth = 0, max_prisms = 0;
   std::optional<double> elements_per_wavelength, height_growth, target_quality, budget_prisms, budget_unknowns;

@@ -32,7 +32,7 @@ KINDS = {(1, "none", 18): {6}, (1, "tets", 18): {4}, (2, "none", 18): {13}, (2, 
 
 def make(folder, order, split, nodes):
     mesh = folder / f"{order}{split}{nodes}.msh"
-    options = ["--order", order, "--split", split] + (["--wedge15"] if nodes == 15 else [])
+    options = ["--order", order, "--split", split, "--tolerance", "5um"] + (["--wedge15"] if nodes == 15 else [])
     board = folder / "round.json"
     board.write_text(json.dumps(BOARD))
     done = run("mesh", board, "-o", mesh, *options)

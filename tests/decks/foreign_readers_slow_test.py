@@ -19,9 +19,18 @@ faults, ran = [], []
 CAPACITOR = {"pcbmesh_board": 1, "name": "capacitor", "units": "mm",
              "materials": [{"name": "a", "eps_r": 3}, {"name": "b", "eps_r": 6}],
              "stackup": [{"name": "low", "kind": "dielectric", "thickness": 0.5, "material": "a"},
+                         {"name": "foil", "kind": "copper", "thickness": 0.02},  # bare: filled by its neighbour
                          {"name": "high", "kind": "dielectric", "thickness": 0.3, "material": "b"}],
              "outline": {"points": [[0, 0], [8, 0], [8, 5], [0, 5]]}}
-AREA_M2, EXACT = 40e-6, 40e-6 / (0.5e-3 / 3 + 0.3e-3 / 6)  # C / eps_0 = 0.184615... m
+AREA_M2, EPS = 40e-6, {"a": 3, "b": 6}
+
+
+def exact_capacitance(tags):
+    """C / eps_0 of the layers in series; 0.820 mm of dielectric in all."""
+    thickness = {material: sum(v["volume_m3"] for v in tags["volumes"] if v["material"] == material) / AREA_M2 for material in EPS}
+    expect(abs(sum(thickness.values()) - 0.82e-3) < 1e-12, f"thickness {thickness}")
+    return AREA_M2 / sum(t / EPS[material] for material, t in thickness.items())
+
 
 # Curved things, hollow copper, inner steps: what readers stumble over.
 ROUND = {"pcbmesh_board": 1, "name": "round", "units": "mm", "nets": ["LINE", "GND"],
@@ -60,15 +69,29 @@ def make(folder, board, stem, *options):
 
 def shell(arguments, folder, timeout=600):
     return subprocess.run(list(map(str, arguments)), cwd=folder, capture_output=True, text=True, timeout=timeout,
-                          env={**os.environ, "OMP_NUM_THREADS": "1"})
+                          env={"WM_PROJECT_DIR": "/usr/share/openfoam", **os.environ, "OMP_NUM_THREADS": "1"})
 
 
 def face(tags, name):
     return next(f["id"] for f in tags["faces"] if f["name"] == name)
 
 
-def volume(tags, material):
-    return next(v["id"] for v in tags["volumes"] if v["material"] == material)
+def volumes(tags, material):
+    return [v["id"] for v in tags["volumes"] if v["material"] == material]
+
+
+LIFT = 1000
+
+
+def lift_face_tags(mesh):
+    """GetDP's regions know no dimension: Region[1] is volume 1 and surface 1. Here surfaces get numbers of their own."""
+    text = mesh.read_text()
+    head, elements = text.split("$Elements\n")
+    rows = [row.split() for row in elements.splitlines()]
+    for row in rows:
+        if len(row) > 5 and row[1] in ("2", "3"):
+            row[3] = row[4] = str(LIFT + int(row[3]))
+    mesh.write_text(head + "$Elements\n" + "\n".join(" ".join(row) for row in rows) + "\n")
 
 
 def check_getdp(folder):
@@ -76,11 +99,13 @@ def check_getdp(folder):
     if not shutil.which("getdp"):
         return skip("GetDP", "getdp is not installed")
     for stem, options, points in (("prisms", [], "Prism; NumberOfPoints 21"), ("tets", ["--split", "tets"], "Tetrahedron; NumberOfPoints 4")):
-        mesh, tags = make(folder, CAPACITOR, f"getdp_{stem}", "--air", "0", "--msh-version", "2.2", *options)
-        low, high = volume(tags, "a"), volume(tags, "b")
+        mesh, tags = make(folder, CAPACITOR, f"getdp_{stem}", "--air", "0", "--msh-version", "2.2", "--ascii", *options)
+        lift_face_tags(mesh)
+        low, high = (",".join(map(str, volumes(tags, material))) for material in "ab")
+        exact = exact_capacitance(tags)
         (folder / "cap.pro").write_text(f"""
-Group {{ Vol_Low = Region[{low}]; Vol_High = Region[{high}]; Vol_All = Region[{{{low},{high}}}];
-  Sur_Down = Region[{face(tags, "zmin")}]; Sur_Up = Region[{face(tags, "zmax")}]; }}
+Group {{ Vol_Low = Region[{{{low}}}]; Vol_High = Region[{{{high}}}]; Vol_All = Region[{{{low},{high}}}];
+  Sur_Down = Region[{LIFT + face(tags, "zmin")}]; Sur_Up = Region[{LIFT + face(tags, "zmax")}]; }}
 Function {{ eps[Vol_Low] = 3; eps[Vol_High] = 6; }}
 Constraint {{ {{ Name Volts; Case {{ {{ Region Sur_Down; Value 0; }} {{ Region Sur_Up; Value 1; }} }} }} }}
 FunctionSpace {{ {{ Name H1; Type Form0; BasisFunction {{ {{ Name sn; NameOfCoef vn; Function BF_Node; Support Vol_All; Entity NodesOf[All]; }} }}
@@ -92,14 +117,14 @@ Formulation {{ {{ Name Static; Type FemEquation; Quantity {{ {{ Name v; Type Loc
 Resolution {{ {{ Name Solve; System {{ {{ Name A; NameOfFormulation Static; }} }} Operation {{ Generate[A]; Solve[A]; SaveSolution[A]; }} }} }}
 PostProcessing {{ {{ Name Energy; NameOfFormulation Static; Quantity {{
   {{ Name twice; Value {{ Integral {{ [ eps[] * SquNorm[{{d v}}] ]; In Vol_All; Jacobian JVol; Integration Int; }} }} }} }} }} }}
-PostOperation {{ {{ Name Print; NameOfPostProcessing Energy; Operation {{ Print[ twice[Vol_All], OnGlobal, Format Table, File "c.txt" ]; }} }} }}
+PostOperation {{ {{ Name Table_C; NameOfPostProcessing Energy; Operation {{ Print[ twice[Vol_All], OnGlobal, Format Table, File "c.txt" ]; }} }} }}
 """)
-        done = shell(["getdp", "cap.pro", "-msh", mesh.name, "-solve", "Solve", "-pos", "Print"], folder)
+        done = shell(["getdp", "cap.pro", "-msh", mesh.name, "-solve", "Solve", "-pos", "Table_C"], folder)
         expect(done.returncode == 0 and (folder / "c.txt").exists(), f"getdp {stem}: {done.stdout[-500:]}{done.stderr[-500:]}")
         if (folder / "c.txt").exists():
             value = float((folder / "c.txt").read_text().split()[-1])
-            expect(abs(value / EXACT - 1) < 1e-9, f"getdp {stem}: C / eps_0 = {value}, exactly {EXACT}")
-            ran.append(f"GetDP, {stem}: C / eps_0 = {value:.9f} m, exactly {EXACT:.9f}")
+            expect(abs(value / exact - 1) < 1e-9, f"getdp {stem}: C / eps_0 = {value}, exactly {exact}")
+            ran.append(f"GetDP, {stem}: C / eps_0 = {value:.9f} m, exactly {exact:.9f}")
             (folder / "c.txt").unlink()
 
 
@@ -114,8 +139,9 @@ def check_calculix(folder):
         names = dict(re.findall(r"(?:ELSET=|NSET=)((?:V|N)(\d+)_\S*)", (folder / f"{stem}_mesh.inp").read_text()))
         by_tag = {name[0] + tag: name for name, tag in names.items()}
         down, up = by_tag[f"N{face(tags, 'zmin')}"], by_tag[f"N{face(tags, 'zmax')}"]
-        materials = "".join(f"*MATERIAL, NAME=M{eps}\n*CONDUCTIVITY\n{eps}.\n*SOLID SECTION, ELSET={by_tag[f'V{volume(tags, name)}']}, MATERIAL=M{eps}\n"
-                            for name, eps in (("a", 3), ("b", 6)))
+        materials = "".join(f"*MATERIAL, NAME=M{eps}\n*CONDUCTIVITY\n{eps}.\n" for eps in EPS.values())
+        materials += "".join(f"*SOLID SECTION, ELSET={by_tag[f'V{tag}']}, MATERIAL=M{eps}\n" for name, eps in EPS.items() for tag in volumes(tags, name))
+        exact = exact_capacitance(tags)
         (folder / f"{stem}.inp").write_text(
             f"*INCLUDE, INPUT={stem}_mesh.inp\n{materials}*INITIAL CONDITIONS, TYPE=TEMPERATURE\nALL_NODES, 0.\n*STEP\n"
             f"*HEAT TRANSFER, STEADY STATE\n*BOUNDARY\n{down}, 11, 11, 0.\n{up}, 11, 11, 1.\n"
@@ -126,8 +152,8 @@ def check_calculix(folder):
         expect(numbers, f"ccx {stem}: no flux\n{done.stdout[-800:]}")
         if numbers:
             value = abs(float(numbers[-1])) * 1e-3  # millimetres
-            expect(abs(value / EXACT - 1) < 2e-6, f"ccx {stem}: C / eps_0 = {value}, exactly {EXACT}")  # six digits are printed
-            ran.append(f"CalculiX, {stem.upper()}: C / eps_0 = {value:.7f} m, exactly {EXACT:.7f}")
+            expect(abs(value / exact - 1) < 2e-6, f"ccx {stem}: C / eps_0 = {value}, exactly {exact}")  # six digits are printed
+            ran.append(f"CalculiX, {stem.upper()}: C / eps_0 = {value:.7f} m, exactly {exact:.7f}")
 
 
 def check_vtk(folder):
@@ -166,7 +192,8 @@ def check_vtk(folder):
         expect(cells == {v["id"]: v["num_cells"] for v in tags["volumes"]}, f"vtk {stem}: cells {cells}")
         if stem == "tets":
             exact = sum(v["volume_m3"] for v in tags["volumes"])
-            expect(abs(total / exact - 1) < 1e-12, f"vtk {stem}: volume {total}, expected {exact}")
+            # VTK 9.1 hands points of Exodus files out in single precision.
+            expect(abs(total / exact - 1) < 1e-6, f"vtk {stem}: volume {total}, expected {exact}")
         sets = output.GetBlock(4)
         found, boxes = {}, {}
         for i in range(sets.GetNumberOfBlocks()):
@@ -178,11 +205,13 @@ def check_vtk(folder):
         low, high = tags["bounding_box_m"]["min"], tags["bounding_box_m"]["max"]
         for name, axis, value in (("xmin", 0, low[0]), ("xmax", 0, high[0]), ("ymin", 1, low[1]), ("zmin", 2, low[2]), ("zmax", 2, high[2])):
             box = boxes[face(tags, name)]
-            expect(abs(box[2 * axis] - value) < 1e-12 and abs(box[2 * axis + 1] - value) < 1e-12, f"vtk {stem}: {name} lies at {box}")
+            expect(max(abs(box[2 * axis] - value), abs(box[2 * axis + 1] - value)) < 1e-9, f"vtk {stem}: {name} lies at {box}")
         ran.append(f"VTK's Exodus reader, {stem}: {sum(cells.values())} cells in {len(cells)} blocks, {sum(found.values())} sides in {len(found)} sets")
 
 
 def check_petsc(folder):
+    # Debian keeps the module beside the PETSc it belongs to.
+    sys.path.extend(map(str, sorted(pathlib.Path("/usr/lib/petscdir").glob("*/*-real/lib/python3/dist-packages"))))
     try:
         import petsc4py
         petsc4py.init(["-dm_plex_check_all"])
@@ -236,10 +265,15 @@ def check_openfoam(folder):
         case = folder / f"case_{stem}"
         (case / "system").mkdir(parents=True)
         (case / "system/controlDict").write_text(control)
+        for scheme, entries in (("fvSchemes", ("ddtSchemes", "gradSchemes", "divSchemes", "laplacianSchemes", "interpolationSchemes", "snGradSchemes")),
+                                ("fvSolution", ())):
+            (case / "system" / scheme).write_text(f"FoamFile {{ version 2.0; format ascii; class dictionary; object {scheme}; }}\n" +
+                                                  "".join(f"{entry} {{ }}\n" for entry in entries))
         shutil.copy(mesh, case / "mesh.msh")
         done = shell([tools["gmshToFoam"], "mesh.msh"], case)
         expect(done.returncode == 0, f"gmshToFoam {stem}: {done.stdout[-800:]}{done.stderr[-300:]}")
-        checked = shell([tools["checkMesh"], "-allTopology"], case).stdout
+        done = shell([tools["checkMesh"], "-constant", "-allTopology"], case)
+        checked = done.stdout + done.stderr
         cells = re.search(r"^\s+cells:\s+(\d+)", checked, re.M)
         expect(cells and int(cells[1]) == sum(v["num_cells"] for v in tags["volumes"]), f"checkMesh {stem}: {checked[-1500:]}")
         leftover = re.search(r"defaultFaces\s+(\d+)", checked)

@@ -101,9 +101,16 @@ def check_unv(path, reference, kind):
     open_quietly(path)
     points, blocks, faces = gmsh_cells(kind)
     expect(faces == reference["faces"], f"{path.name}: Gmsh finds faces {faces}")
-    names = {gmsh.model.getPhysicalName(d, t) for d, t in gmsh.model.getPhysicalGroups()}
-    wanted = {g["name"][:40] for g in reference["tags"]["volumes"] + reference["tags"]["faces"]}
-    expect(wanted <= names, f"{path.name}: names {sorted(wanted - names)} are missing, found {sorted(names)}")
+    # Gmsh reads the groups of data set 2467 without their names: these are read from the text.
+    sets = path.read_text().split("    -1\n")
+    groups = next(s for s in sets if s.startswith("  2467")).splitlines()[1:]
+    found, at = {}, 0
+    while at < len(groups):
+        size = int(groups[at].split()[7])
+        found[groups[at + 1]] = size
+        at += 2 + (size + 1) // 2
+    wanted = {g["name"][:40]: g["num_cells"] for g in reference["tags"]["volumes"]} | {g["name"][:40]: g["num_faces"] for g in reference["tags"]["faces"]}
+    expect(found == wanted, f"{path.name}: groups {found}, expected {wanted}")
     compare(f"{path.name} by Gmsh", reference, points, blocks, 0)
 
 
@@ -170,7 +177,7 @@ def main():
                 check(mesh.with_suffix(ending), reference, what)
             # MFEM: no reader of it is packaged; ours, which shares no code with the writer, and the checker judge it.
             done("convert", mesh, mesh.with_suffix(".mesh"))
-            expect("passed" in done("check", mesh.with_suffix(".mesh")).stdout, f"{stem}.mesh: the checker does not pass it")
+            expect("PASSED" in done("check", mesh.with_suffix(".mesh")).stdout, f"{stem}.mesh: the checker does not pass it")
             done("convert", mesh.with_suffix(".mesh"), folder / f"{stem}_again.msh")
             again = reference_of(folder / f"{stem}_again.msh", tags, kind)
             expect(again["counts"] == reference["counts"] and numpy.array_equal(again["points"], reference["points"]), f"{stem}: MFEM and back")
