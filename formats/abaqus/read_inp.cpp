@@ -143,6 +143,7 @@ class Reader {
     std::int64_t element;
     std::int32_t side, tag;
   };
+  void take_comment(std::string_view line);
   void take_keyword(std::string_view line);
   void take_node(std::string_view line);
   void take_element(std::string_view line);
@@ -185,6 +186,7 @@ class Reader {
   std::vector<Element> elements_;
   std::vector<Side> sides_;
   Tags volumes_{'V'}, surfaces_{'S'};
+  std::map<std::int32_t, std::string> volume_names_, surface_names_;  ///< from comments: set names hold no blanks or bars
 };
 
 mesh::MeshData Reader::read(std::string name) {
@@ -193,7 +195,10 @@ mesh::MeshData Reader::read(std::string name) {
     const std::string line(trimmed(source_.line()));
     if (lines % lines_per_report == 0)
       progress_.at("read", static_cast<double>(source_.offset()) / static_cast<double>(source_.size()));
-    if (line.starts_with("**")) continue;
+    if (line.starts_with("**")) {
+      take_comment(line);
+      continue;
+    }
     if (line.starts_with('*')) {
       if (!row_.empty()) source_.fail("an element ends too early: it has fewer nodes than its type");
       take_keyword(line);
@@ -207,6 +212,19 @@ mesh::MeshData Reader::read(std::string name) {
   }
   finish();
   return builder_.take(std::move(name));
+}
+
+/// "** volume 3 top|copper|GND": how the group is really called.
+void Reader::take_comment(std::string_view line) {
+  for (const auto& [word, names] : {std::pair<std::string_view, std::map<std::int32_t, std::string>*>{"** volume ", &volume_names_},
+                                    {"** surface ", &surface_names_}}) {
+    if (!line.starts_with(word)) continue;
+    const std::string_view rest = line.substr(word.size());
+    std::int32_t tag = 0;
+    const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), tag);
+    const auto used = static_cast<std::size_t>(end - rest.data());
+    if (error == std::errc() && used + 1 < rest.size() && rest[used] == ' ') (*names)[tag] = std::string(rest.substr(used + 1));
+  }
 }
 
 void Reader::take_keyword(std::string_view line) {
@@ -302,8 +320,14 @@ void Reader::finish() {
     if (face.empty()) source_.fail(fmt::format("element {} has no side S{}", side.element, side.side));
     builder_.add_element(face_kind(face.size()), next++, side.tag, face);
   }
-  for (const auto& [tag, name] : volumes_.names()) builder_.add_name(3, tag, name);
-  for (const auto& [tag, name] : surfaces_.names()) builder_.add_name(2, tag, name);
+  const auto add_names = [&](int dimension, const Tags& tags, const std::map<std::int32_t, std::string>& real_names) {
+    for (const auto& [tag, name] : tags.names()) {
+      const auto found = real_names.find(tag);
+      builder_.add_name(dimension, tag, found == real_names.end() ? name : found->second);
+    }
+  };
+  add_names(3, volumes_, volume_names_);
+  add_names(2, surfaces_, surface_names_);
 }
 
 }  // namespace

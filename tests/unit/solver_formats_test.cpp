@@ -193,6 +193,8 @@ TEST(Abaqus, GivesBackCellsSidesAndTags) {
       return out;
     };
     EXPECT_EQ(faces_of(read), faces_of(expected));
+    for (const mesh::GroupName& name : read.names)
+      EXPECT_TRUE(names_of(expected).contains({name.dimension, name.tag, name.name})) << name.name;
   }
 }
 
