@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Streams 10 million prisms to a file and compares with a raw write() of as many bytes to the same folder.
-// write_bench [folder = /dev/shm] [millions of prisms = 10]
+// write_bench [folder = /dev/shm] [millions of prisms = 10] [text | json] [part of a case's name]
+// With "json" one line of JSON per format follows, for write_peers.py.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <malloc.h>
@@ -10,6 +11,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -17,8 +19,8 @@
 #include <tuple>
 #include <vector>
 
-#include "formats/msh/format.hpp"
-#include "formats/vtu/format.hpp"
+#include "pcbmesh/formats/registry.hpp"
+#include "pcbmesh/layering/prism_quality.hpp"
 #include "pcbmesh/mesh/prism_mesh.hpp"
 #include "pcbmesh/mesh/prism_source.hpp"
 
@@ -139,33 +141,77 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-void measure(const mesh::PrismMesh& mesh, const formats::MeshFormat& format, const std::string& version,
-             const std::filesystem::path& folder, std::string_view what) {
+struct Case {
+  std::string name, format;
+  formats::WriteMeshOptions options;
+};
+
+std::vector<Case> cases() {
+  formats::WriteMeshOptions old, wide, packed, packed_twice;
+  old.version = "2.2";
+  wide.index_bits = 64;
+  packed.compression = formats::Compression::zlib;
+  packed_twice = packed;
+  packed_twice.num_threads = 2;
+  formats::WriteMeshOptions lz4 = packed_twice;
+  lz4.compression = formats::Compression::lz4;
+  return {{"MSH 4.1 binary", "msh", {}},
+          {"MSH 2.2 binary", "msh", old},
+          {"VTU raw", "vtu", {}},
+          {"VTU raw, 64 bits", "vtu", wide},
+          {"VTU LZ4, 2 threads", "vtu", lz4},
+          {"VTU zlib, 1 thread", "vtu", packed},
+          {"VTU zlib, 2 threads", "vtu", packed_twice},
+          {"HDF5 contiguous", "vtkhdf", {}},
+          {"HDF5 deflate, 1 thread", "vtkhdf", packed},
+          {"HDF5 deflate, 2 threads", "vtkhdf", packed_twice},
+          {"native", "native", {}}};
+}
+
+void measure(const mesh::PrismMesh& mesh, const Case& what, const std::filesystem::path& folder, bool as_json) {
   const auto mesh_file = folder / "pcbmesh_write_bench.mesh", raw_file = folder / "pcbmesh_write_bench.raw";
-  std::vector<double> written, raw, ratios, cpu_ratios;
+  std::vector<Seconds> written, raw;
+  std::vector<double> ratios, cpu_ratios;
   double growth = 0;
   std::uint64_t size = 0;
-  for (int pair = 0; pair < num_pairs; ++pair) {
+  const bool is_packed = what.options.compression == formats::Compression::zlib;
+  const int pairs = is_packed ? 1 : num_pairs;
+  for (int pair = 0; pair < pairs; ++pair) {
     std::filesystem::remove(mesh_file);
     ::malloc_trim(0);  // memory kept from the run before would hide this one's
     reset_peak();
     const double before = peak_mb();
-    const Seconds ours = seconds_of([&] {
-      mesh::PrismSource source(mesh);
-      format.write(source, mesh_file, {.version = version}, Progress{});
-    });
+    written.push_back(seconds_of([&] {
+      mesh::PrismSource source(mesh, layering::prism_quality);
+      formats::write_mesh(source, mesh_file, what.options, what.format, Progress{});
+    }));
     growth = std::max(growth, peak_mb() - before);
     size = std::filesystem::file_size(mesh_file);
     std::filesystem::remove(mesh_file);
-    const Seconds plain = seconds_of([&] { write_raw(raw_file, size); });
+    raw.push_back(seconds_of([&] { write_raw(raw_file, size); }));
     std::filesystem::remove(raw_file);
-    written.push_back(ours.wall);
-    raw.push_back(plain.wall);
-    ratios.push_back(ours.wall / plain.wall);
-    cpu_ratios.push_back(ours.cpu / plain.cpu);
+    ratios.push_back(written.back().wall / raw.back().wall);
+    cpu_ratios.push_back(written.back().cpu / raw.back().cpu);
   }
-  fmt::print("{:<16} {:>7.1f} MB  write {:.3f} s  raw {:.3f} s  ratio {:.2f}  CPU ratio {:.2f}  peak growth {:.1f} MB\n", what,
-             static_cast<double>(size) * 1e-6, median(written), median(raw), median(ratios), median(cpu_ratios), growth);
+  const auto cpu_of = [](const std::vector<Seconds>& all) {
+    std::vector<double> values;
+    for (const Seconds& s : all) values.push_back(s.cpu);
+    return median(values);
+  };
+  const auto wall_of = [](const std::vector<Seconds>& all) {
+    std::vector<double> values;
+    for (const Seconds& s : all) values.push_back(s.wall);
+    return median(values);
+  };
+  fmt::print(
+      "{:<24} {:>7.1f} MB  CPU {:.3f} s  wall {:.3f} s  raw CPU {:.3f} s  CPU ratio {:.2f}  wall ratio {:.2f}  growth {:.1f} "
+      "MB\n",
+      what.name, static_cast<double>(size) * 1e-6, cpu_of(written), wall_of(written), cpu_of(raw), median(cpu_ratios),
+      median(ratios), growth);
+  if (as_json)
+    fmt::print("{{\"case\": \"{}\", \"cpu_s\": {:.4f}, \"growth_mb\": {:.2f}, \"prisms\": {}}}\n", what.name, cpu_of(written),
+               growth, mesh.num_prisms());
+  std::fflush(stdout);
 }
 
 }  // namespace
@@ -173,12 +219,16 @@ void measure(const mesh::PrismMesh& mesh, const formats::MeshFormat& format, con
 int main(int count, char** arguments) {
   const std::filesystem::path folder = count > 1 ? arguments[1] : "/dev/shm";
   const double millions = count > 2 ? std::strtod(arguments[2], nullptr) : 10;
+  const std::string wanted = count > 4 ? arguments[4] : "";
+  const bool as_json = count > 3 && std::string(arguments[3]) == "json";
   for (const bool with_voids : {false, true}) {
     const mesh::PrismMesh mesh = synthetic_mesh(static_cast<std::int64_t>(millions * 1e6), with_voids);
     fmt::print("{} prisms{}, {} nodes, {} triangles in the plane; medians of {} pairs, folder {}\n", mesh.num_prisms(),
                with_voids ? " with voids" : "", mesh.num_nodes(), mesh.planar().num_triangles(), num_pairs, folder.string());
-    measure(mesh, formats::msh::mesh_format, "4.1", folder, "MSH 4.1 binary");
-    measure(mesh, formats::msh::mesh_format, "2.2", folder, "MSH 2.2 binary");
-    measure(mesh, formats::vtu::mesh_format, "", folder, "VTU raw");
+    for (const Case& what : cases()) {
+      if (what.name.find(wanted) == std::string::npos) continue;
+      if (with_voids && what.options.compression != formats::Compression::none) continue;
+      measure(mesh, what, folder, as_json && !with_voids);
+    }
   }
 }

@@ -39,13 +39,15 @@ inline void fill_tag_sizes(mesh::PrismMeshParts& parts) {
   }
 }
 
-/// 6 x 4 squares in 6 regions, 3 slabs of 1, 3 and 2 sub-layers. Region 1 is void in slab 1 (a hollow conductor), region 5 in
+/// 6 x 4 squares in 6 regions, 3 slabs of 1, 3 and 2 sub-layers of unequal heights. Region 1 is void in slab 1 (a hollow conductor), region 5 in
 /// slabs 1 and 2 (a step of the outer shape). Volume tag 2 lives in two slabs.
 inline mesh::PrismMeshParts sample_parts(bool with_voids = true) {
   mesh::PrismMeshParts parts;
   parts.planar = grid(
       6, 4, 1e-3 / 3, 7e-4, [](int i, int j) { return i / 2 + 3 * (j / 2); }, std::vector<std::vector<std::int32_t>>(6));
-  parts.plan = even_plan({1, 3, 2}, 1e-4 / 3);
+  // Sub-layers of a slab differ in height, as grading makes them.
+  constexpr double z_m = 1e-4 / 3;
+  parts.plan = mesh::LayerPlan::from_parts({{0, z_m, 1.5 * z_m, 3 * z_m, 4 * z_m, 5.5 * z_m, 6 * z_m}, {0, 1, 1, 1, 2, 2}});
   parts.layers = {"bottom", "core", "top"};
   parts.materials = {{"FR4", 4.4, 0.02, 1, 0}, {"copper", 1, 0, 1, 5.8e7}, {"air"}};
   parts.nets = {"GND", "/clk+", "unused", "hollow"};

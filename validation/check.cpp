@@ -43,7 +43,7 @@ Report check(const mesh::MeshData& mesh, const Expectation* expectation, const C
   checks::check_volumes(context, match, sums, report);
   checks::check_tags(context, sums.cells_of_tag, report);
   if (context.has_geometry) checks::check_face_groups(context, report);
-  checks::check_nets(context, nets, report);
+  checks::check_nets(context, nets, options.netlist, report);
   return report;
 }
 

@@ -113,7 +113,7 @@ constexpr CheckCode table[] = {
     {"tag.unexpected", FindingSeverity::error, "Tags and names", "elements carry a tag that tags.json does not know",
      "cells or faces were lost, or the files are from different runs"},
     {"net.open", FindingSeverity::error, "Nets",
-     "a net falls into more pieces than in the layout; the places are one cell of each piece",
+     "a net falls into more pieces than in the layout, or has no copper at all; the places are the narrowest gaps",
      "lower the snapping tolerance or mesh size there"},
     {"net.merged", FindingSeverity::error, "Nets", "pieces of one net that are apart in the layout have grown together",
      "lower the snapping tolerance or mesh size there"},

@@ -2,6 +2,7 @@
 #include "pcbmesh/validation/report.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -85,6 +86,14 @@ std::string to_text(const Report& report) {
       text += fmt::format("{:>6} {:>14} {:>20.12g}  {}\n", group.tag, grouped(group.num_cells), group.volume, group.name);
     }
   }
+  if (!report.nets.empty()) {
+    text += fmt::format("\n{:>6} {:>6} {:>14} {:>20}  {}\n", "pieces", "layout", "cells", "volume", "net");
+    for (const NetVerdict& net : report.nets)
+      text +=
+          fmt::format("{:>6} {:>6} {:>14} {:>20.12g}  {}{}\n", net.pieces,
+                      net.expected_pieces >= 0 ? std::to_string(net.expected_pieces) : "?", grouped(net.num_cells), net.volume,
+                      net.name, net.ports.empty() ? "" : fmt::format(" (ports {})", fmt::join(net.ports, ", ")));
+  }
   return text;
 }
 
@@ -115,6 +124,8 @@ std::string to_json(const Report& report) {
                                {"text", finding.text},
                                {"count", finding.count},
                                {"places", std::move(places)}});
+    if (!finding.nets.empty()) out["findings"].back()["nets"] = finding.nets;
+    if (!finding.layer.empty()) out["findings"].back()["layer"] = finding.layer;
   }
   out["checks"] = json::array();
   for (const CheckRun& check : report.checks) {
@@ -125,6 +136,15 @@ std::string to_json(const Report& report) {
   for (const GroupVolume& group : report.volumes) {
     out["volumes"].push_back(
         {{"tag", group.tag}, {"name", group.name}, {"num_cells", group.num_cells}, {"volume", group.volume}});
+  }
+  out["nets"] = json::array();
+  for (const NetVerdict& net : report.nets) {
+    out["nets"].push_back({{"name", net.name},
+                           {"pieces", net.pieces},
+                           {"pieces_of_layout", net.expected_pieces >= 0 ? json(net.expected_pieces) : json(nullptr)},
+                           {"num_cells", net.num_cells},
+                           {"volume", net.volume},
+                           {"ports", net.ports}});
   }
   // Names come from files: bytes that are no UTF-8 are replaced, not thrown at.
   return out.dump(2, ' ', false, json::error_handler_t::replace) + "\n";

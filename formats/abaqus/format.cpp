@@ -131,7 +131,9 @@ constexpr KindSet faces = kind_set(triangle, quadrangle, triangle6, quadrangle8)
 
 }  // namespace
 
-constinit const MeshFormat mesh_format{"abaqus", "Abaqus and CalculiX input", extensions, write, read_inp,
-                                       {.written = solids | faces, .readable = solids | faces, .has_tags = true, .has_names = true}};
+constinit const MeshFormat mesh_format{
+    "abaqus",   "Abaqus and CalculiX input",
+    extensions, write,
+    read_inp,   {.written = solids | faces, .readable = solids | faces, .has_tags = true, .has_names = true}};
 
 }  // namespace pcbmesh::formats::abaqus

@@ -5,7 +5,8 @@
 
 namespace pcbmesh::formats::abaqus {
 
-/// Abaqus and CalculiX input: nodes, elements, element sets, node sets, surfaces. Coordinates have at most 20 characters, because CalculiX reads no more.
+/// Abaqus and CalculiX input: nodes, elements, element sets, node sets, surfaces. Coordinates have at most 20 characters,
+/// because CalculiX reads no more.
 extern const MeshFormat mesh_format;
 
 }  // namespace pcbmesh::formats::abaqus

@@ -83,8 +83,7 @@ std::vector<int> side_nodes(ElementKind kind, int side) {
         {0, 1, 4, 3, 6, 10, 12, 8},
         {1, 2, 5, 4, 9, 11, 14, 10},
         {2, 0, 3, 5, 7, 8, 13, 11}}},
-      {ElementKind::hexahedron,
-       {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}}};
+      {ElementKind::hexahedron, {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}}}};
   const auto& of_kind = sides.at(kind);
   if (side < 1 || static_cast<std::size_t>(side) > of_kind.size()) return {};
   return of_kind[static_cast<std::size_t>(side) - 1];
@@ -127,8 +126,7 @@ class Tags {
 
 class Reader {
  public:
-  Reader(const std::filesystem::path& file, const Progress& progress)
-      : source_(file), progress_(progress), builder_(source_) {}
+  Reader(const std::filesystem::path& file, const Progress& progress) : source_(file), progress_(progress), builder_(source_) {}
   mesh::MeshData read(std::string name);
 
  private:
@@ -216,8 +214,9 @@ mesh::MeshData Reader::read(std::string name) {
 
 /// "** volume 3 top|copper|GND": how the group is really called.
 void Reader::take_comment(std::string_view line) {
-  for (const auto& [word, names] : {std::pair<std::string_view, std::map<std::int32_t, std::string>*>{"** volume ", &volume_names_},
-                                    {"** surface ", &surface_names_}}) {
+  for (const auto& [word, names] :
+       {std::pair<std::string_view, std::map<std::int32_t, std::string>*>{"** volume ", &volume_names_},
+        {"** surface ", &surface_names_}}) {
     if (!line.starts_with(word)) continue;
     const std::string_view rest = line.substr(word.size());
     std::int32_t tag = 0;
@@ -244,7 +243,8 @@ void Reader::take_keyword(std::string_view line) {
     const std::string type = upper_case(options["TYPE"]);
     const std::optional<ElementKind> kind = kind_of(type);
     if (!kind)
-      source_.fail(fmt::format("elements of type '{}' are not read; C3D4, C3D5, C3D6, C3D8, C3D10 and C3D15 are", type.substr(0, 20)));
+      source_.fail(
+          fmt::format("elements of type '{}' are not read; C3D4, C3D5, C3D6, C3D8, C3D10 and C3D15 are", type.substr(0, 20)));
     kind_ = *kind;
     tag_ = options["ELSET"].empty() ? 0 : volumes_.of(options["ELSET"]);
     block_ = Block::element;
@@ -316,7 +316,8 @@ void Reader::finish() {
     if (found == elements_.end() || found->number != side.element)
       source_.fail(fmt::format("a surface names element {}, which does not exist", side.element));
     face.clear();
-    for (const int node : side_nodes(found->kind, side.side)) face.push_back(nodes_[found->first + static_cast<std::size_t>(node)]);
+    for (const int node : side_nodes(found->kind, side.side))
+      face.push_back(nodes_[found->first + static_cast<std::size_t>(node)]);
     if (face.empty()) source_.fail(fmt::format("element {} has no side S{}", side.element, side.side));
     builder_.add_element(face_kind(face.size()), next++, side.tag, face);
   }

@@ -26,7 +26,8 @@ constexpr std::array<std::uint8_t, 10> tetrahedron_vtk{0, 1, 2, 3, 4, 5, 6, 7, 9
 
 std::span<const std::uint8_t> node_order(ElementKind kind, NodeOrder order) {
   const auto width = static_cast<std::size_t>(mesh::nodes_of(kind));
-  if (order == NodeOrder::gmsh || mesh::order_of(kind) == 1 || mesh::dimension_of(kind) == 2) return std::span(same).first(width);
+  if (order == NodeOrder::gmsh || mesh::order_of(kind) == 1 || mesh::dimension_of(kind) == 2)
+    return std::span(same).first(width);
   if (kind == ElementKind::tetrahedron10) return tetrahedron_vtk;
   return std::span(order == NodeOrder::vtk ? wedge_vtk : wedge_exodus).first(width);
 }
@@ -66,11 +67,12 @@ std::int64_t visit_elements(const WriteJob& job, std::size_t block, NodeOrder or
 void require_count(const WriteJob& job, std::string_view format, std::int64_t most) {
   const std::int64_t elements = job.source.num_elements(2) + job.source.num_elements(3), nodes = job.source.num_nodes();
   if (nodes <= most && elements <= most) return;
-  throw Error(ErrorCode::format_limit,
-              fmt::format("{} numbers nodes and elements up to {}, and this mesh has {} nodes and {} elements; write MSH 4.1 or "
-                          "a coarser mesh",
-                          format, most, nodes, elements),
-              {.file = job.file.string()});
+  throw Error(
+      ErrorCode::format_limit,
+      fmt::format("{} numbers nodes and elements up to {}, and this mesh has {} nodes and {} elements; write MSH 4.1 or "
+                  "a coarser mesh",
+                  format, most, nodes, elements),
+      {.file = job.file.string()});
 }
 
 void put_real(FileSink& sink, double value, std::size_t width) {
@@ -78,7 +80,8 @@ void put_real(FileSink& sink, double value, std::size_t width) {
     // "1" and "1e-05" would be taken for integers by column readers: a real has a point.
     const std::size_t exponent = text.find('e');
     const std::size_t end = exponent == std::string::npos ? text.size() : exponent;
-    if (text.find('.') == std::string::npos && text.find_first_not_of("-0123456789e+") == std::string::npos) text.insert(end, ".");
+    if (text.find('.') == std::string::npos && text.find_first_not_of("-0123456789e+") == std::string::npos)
+      text.insert(end, ".");
     std::ranges::replace(text, 'e', 'E');
     return text;
   };
@@ -109,7 +112,8 @@ void put_real(FileSink& sink, double value, std::size_t width) {
 
 void put_padded(FileSink& sink, std::int64_t value, std::size_t width) {
   std::array<char, 24> digits;
-  const auto size = static_cast<std::size_t>(std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr - digits.data());
+  const auto size =
+      static_cast<std::size_t>(std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr - digits.data());
   char* to = sink.room(width);
   std::memset(to, ' ', width - size);
   std::memcpy(to + width - size, digits.data(), size);

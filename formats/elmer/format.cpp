@@ -150,11 +150,8 @@ constexpr KindSet kinds =
 }  // namespace
 
 constinit const MeshFormat mesh_format{
-    "elmer",
-    "Elmer mesh, a folder of mesh.* files",
-    extensions,
-    write,
-    nullptr,
-    {.written = kinds, .readable = 0, .has_tags = true, .has_names = true, .is_folder = true}};
+    "elmer",    "Elmer mesh, a folder of mesh.* files",
+    extensions, write,
+    nullptr,    {.written = kinds, .readable = 0, .has_tags = true, .has_names = true, .is_folder = true}};
 
 }  // namespace pcbmesh::formats::elmer

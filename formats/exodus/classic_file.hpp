@@ -13,9 +13,9 @@ namespace pcbmesh::formats::exodus {
 /// Types of netCDF's classic format.
 enum class ClassicType : std::int32_t { character = 2, integer = 4, real = 5, double_real = 6 };
 
-/// A netCDF file of the classic format with 64-bit offsets (CDF-2), written front to back. All is declared first; then the values
-/// of every variable are appended in the order of declaration. Big-endian, as the format wants it.
-/// Source: NetCDF Users' Guide, "The NetCDF Classic Format Specification".
+/// A netCDF file of the classic format with 64-bit offsets (CDF-2), written front to back. All is declared first; then the
+/// values of every variable are appended in the order of declaration. Big-endian, as the format wants it. Source: NetCDF Users'
+/// Guide, "The NetCDF Classic Format Specification".
 class ClassicFile {
  public:
   explicit ClassicFile(FileSink& sink) : sink_(sink) {}

@@ -24,7 +24,8 @@ constexpr std::array<std::string_view, 3> extensions{".exo", ".e", ".exii"};
 constexpr std::size_t name_bytes = 256;
 
 std::string_view type_of(ElementKind kind) {
-  constexpr std::string_view types[] = {"", "", "TETRA", "PYRAMID", "WEDGE", "HEX", "", "", "", "TETRA10", "WEDGE15", "WEDGE18"};
+  constexpr std::string_view types[] = {"", "", "TETRA", "PYRAMID", "WEDGE",   "HEX",
+                                        "", "", "",      "TETRA10", "WEDGE15", "WEDGE18"};
   return types[static_cast<int>(kind)];
 }
 
@@ -223,12 +224,13 @@ void write(mesh::MeshSource& source, const std::filesystem::path& file, const Wr
 }
 
 using enum ElementKind;
-constexpr KindSet kinds = kind_set(triangle, quadrangle, tetrahedron, pyramid, wedge, hexahedron, triangle6, quadrangle8, quadrangle9,
-                                   tetrahedron10, wedge15, wedge18);
+constexpr KindSet kinds = kind_set(triangle, quadrangle, tetrahedron, pyramid, wedge, hexahedron, triangle6, quadrangle8,
+                                   quadrangle9, tetrahedron10, wedge15, wedge18);
 
 }  // namespace
 
-constinit const MeshFormat mesh_format{"exodus", "Exodus II (MOOSE, Cubit, ParaView)", extensions, write, nullptr,
-                                       {.written = kinds, .readable = 0, .has_tags = true, .has_names = true}};
+constinit const MeshFormat mesh_format{"exodus",   "Exodus II (MOOSE, Cubit, ParaView)",
+                                       extensions, write,
+                                       nullptr,    {.written = kinds, .readable = 0, .has_tags = true, .has_names = true}};
 
 }  // namespace pcbmesh::formats::exodus

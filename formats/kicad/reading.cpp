@@ -48,6 +48,10 @@ void Reading::warn(std::string_view code, std::string_view text, Sexpr at, std::
   diagnostics.warn(code, text, spot(at, place));
 }
 
+void Reading::assume(std::string_view code, std::string_view text, Sexpr at, std::optional<Vec> place) {
+  diagnostics.assume(Severity::warning, code, text, spot(at, place));
+}
+
 double Reading::number(Sexpr atom) const {
   std::string_view text = atom.raw();
   if (text.starts_with('+')) text.remove_prefix(1);

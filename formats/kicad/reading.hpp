@@ -86,6 +86,8 @@ class Reading {
 
   [[nodiscard]] Spot spot(syntax::Sexpr at, std::optional<Vec> place = std::nullopt) const;
   void warn(std::string_view code, std::string_view text, syntax::Sexpr at, std::optional<Vec> place = std::nullopt);
+  /// The file does not state a value; the text names the one taken.
+  void assume(std::string_view code, std::string_view text, syntax::Sexpr at, std::optional<Vec> place = std::nullopt);
   /// Counts every sub-list of `item` whose head is in neither list; construct and place are reported at the end.
   void count_unknown(syntax::Sexpr item, std::span<const std::string_view> known);
   void count_unknown_list(syntax::Sexpr list);

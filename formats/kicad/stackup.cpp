@@ -43,6 +43,7 @@ std::int32_t copper_material(board::BoardParts& parts) {
 /// One ply of a dielectric: sums of thickness, t/er and t/er*tan d, for layers in series.
 struct Plies {
   double thickness_mm = 0, series = 0, lossy = 0;
+  bool is_assumed = false;  ///< some ply does not state its permittivity
   std::string material;
   void add(double t, double eps_r, double tan_delta, const std::string& name) {
     thickness_mm += t;
@@ -125,7 +126,7 @@ class StackupReader {
   void read_copper(Sexpr layer, int copper) {
     Nm thickness = reading_.length(reading_.number_of(layer, "thickness").value_or(0), layer);
     if (thickness <= 0) {
-      reading_.warn("kicad.copper_thickness", "copper layer without a thickness; 35 um is used", layer);
+      reading_.assume("kicad.copper_thickness", "copper layer without a thickness; 35 um is used", layer);
       thickness = default_copper_nm;
     }
     push_copper(copper, thickness);
@@ -167,7 +168,8 @@ class StackupReader {
         plies.material.empty() ? (kind == LayerKind::solder_mask ? "solder mask" : "dielectric") : plies.material;
     const std::int32_t index = material_index(reading_.parts, {.name = std::move(material),
                                                                .eps_r = rounded(plies.thickness_mm / plies.series),
-                                                               .tan_delta = rounded(plies.lossy / plies.series)});
+                                                               .tan_delta = rounded(plies.lossy / plies.series),
+                                                               .is_assumed = plies.is_assumed});
     reading_.parts.stackup.push_back({unique(name), "", kind, thickness, index});
   }
 
@@ -185,17 +187,20 @@ class StackupReader {
     const bool mask = kind == LayerKind::solder_mask;
     if (!ply.eps_r || !(*ply.eps_r >= 1) || !(*ply.eps_r <= 1e6)) {
       if (ply.eps_r || !mask)
-        reading_.warn("kicad.epsilon_r",
-                      fmt::format("permittivity absent or impossible; {} is used", mask ? mask_eps_r : default_eps_r), layer);
+        reading_.assume("kicad.epsilon_r",
+                        fmt::format("permittivity absent or impossible; {} is used unless a library knows the material",
+                                    mask ? mask_eps_r : default_eps_r),
+                        layer);
       else
-        reading_.diagnostics.note("kicad.mask_epsilon_r", "solder mask without a permittivity; 3.3 is used",
-                                  reading_.spot(layer));
+        reading_.diagnostics.assume(Severity::note, "kicad.mask_epsilon_r", "solder mask without a permittivity; 3.3 is used",
+                                    reading_.spot(layer));
       ply.eps_r = mask ? mask_eps_r : default_eps_r;
+      plies.is_assumed = true;
     }
     if (!ply.tan_delta || !(*ply.tan_delta >= 0) || !(*ply.tan_delta <= 1e3)) {
       if (ply.tan_delta || !mask)
-        reading_.warn("kicad.loss_tangent",
-                      fmt::format("loss tangent absent or impossible; {} is used", mask ? 0 : default_tan_delta), layer);
+        reading_.assume("kicad.loss_tangent",
+                        fmt::format("loss tangent absent or impossible; {} is used", mask ? 0 : default_tan_delta), layer);
       ply.tan_delta = mask ? 0 : default_tan_delta;
     }
     plies.add(t, *ply.eps_r, *ply.tan_delta, ply.material);
@@ -205,27 +210,27 @@ class StackupReader {
     const Sexpr general = root_.child("general");
     double board_mm = reading_.number_of(general, "thickness").value_or(0);
     if (!(board_mm > 0)) {
-      reading_.warn("kicad.board_thickness", "board thickness absent or zero; 1.6 mm is used", general ? general : root_);
+      reading_.assume("kicad.board_thickness", "board thickness absent or zero; 1.6 mm is used", general ? general : root_);
       board_mm = default_board_mm;
     }
     const int n = reading_.layers.num_copper();
     const Nm total = reading_.length(board_mm, general), gaps = std::max(1, n - 1);
     Nm dielectric = (total - n * default_copper_nm) / gaps;
     if (dielectric < thinnest_default_nm) {
-      reading_.warn("kicad.board_thickness",
-                    fmt::format("{} copper layers of 35 um do not fit into a board of {} mm; dielectrics of 100 um are used", n,
-                                board_mm),
-                    general);
+      reading_.assume("kicad.board_thickness",
+                      fmt::format("{} copper layers of 35 um do not fit into a board of {} mm; dielectrics of 100 um are used",
+                                  n, board_mm),
+                      general);
       dielectric = spare_dielectric_nm;
     }
     if (!section)
-      reading_.warn(
+      reading_.assume(
           "kicad.default_stackup",
           fmt::format("the file has no stackup; copper 35 um and {} dielectric layers of {} (er 4.5, tan d 0.02) are used",
                       gaps, format_length(dielectric)),
           root_);
-    const std::int32_t material =
-        material_index(reading_.parts, {.name = "FR4 (default)", .eps_r = default_eps_r, .tan_delta = default_tan_delta});
+    const std::int32_t material = material_index(
+        reading_.parts, {.name = "FR4 (default)", .eps_r = default_eps_r, .tan_delta = default_tan_delta, .is_assumed = true});
     for (int i = 0; i < n; ++i) {
       push_copper(i, default_copper_nm);
       if (i < gaps)

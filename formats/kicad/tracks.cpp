@@ -101,13 +101,13 @@ void read_later_drills(Reading& reading, Sexpr item, geometry::Point at, std::in
     const Nm tool = reading.length(reading.number_of(part, "size").value_or(0), part);
     if (tool <= 0 || !part.child("layers")) continue;
     const Span span = span_of(reading, part.child("layers"), part);
-    reading.diagnostics.note("kicad.backdrill", "backdrills are read as unplated holes", reading.spot(part));
     reading.add_drill({.figure = geometry::disc(at, tool),
                        .first_copper = span.first,
                        .last_copper = span.last,
                        .plated = false,
                        .net = net,
-                       .kind = ShapeKind::via},
+                       .kind = ShapeKind::via,
+                       .is_backdrill = true},
                       part);
   }
 }
@@ -195,8 +195,8 @@ void read_via(Reading& reading, const ViaDefaults& defaults, Sexpr item) {
   double drill = reading.number_of(item, "drill").value_or(0);
   if (!(drill > 0)) {
     drill = defaults.drill_mm(reading, net, micro);
-    reading.diagnostics.note("kicad.via_default_drill", "via without a drill; the net class' drill is used",
-                             reading.spot(item));
+    reading.diagnostics.assume(Severity::note, "kicad.via_default_drill", "via without a drill; the net class' drill is used",
+                               reading.spot(item));
   }
   const Nm copper = reading.length(sizes[static_cast<std::size_t>(span.first)], item);
   const Nm tool = checked_drill(reading, reading.length(drill, item), copper, item, place);

@@ -89,7 +89,8 @@ constexpr KindSet kinds = kind_set(triangle, quadrangle, tetrahedron, pyramid, w
 
 }  // namespace
 
-constinit const MeshFormat mesh_format{"mfem", "MFEM mesh, versions 1.3 and 1.0 (Palace, MFEM)", extensions, write, read_mfem,
-                                       {.written = kinds, .readable = kinds, .has_tags = true, .has_names = true}};
+constinit const MeshFormat mesh_format{"mfem",     "MFEM mesh, versions 1.3 and 1.0 (Palace, MFEM)",
+                                       extensions, write,
+                                       read_mfem,  {.written = kinds, .readable = kinds, .has_tags = true, .has_names = true}};
 
 }  // namespace pcbmesh::formats::mfem

@@ -29,11 +29,9 @@ void write(mesh::MeshSource& source, const std::filesystem::path& file, const Wr
 
 }  // namespace
 
-using enum mesh::ElementKind;
-constexpr KindSet kinds = kind_set(triangle, quadrangle, tetrahedron, pyramid, wedge, hexahedron, triangle6, quadrangle8, quadrangle9,
-                                   tetrahedron10, wedge15, wedge18);
-
-constinit const MeshFormat mesh_format{"msh", "Gmsh mesh, versions 4.1 and 2.2", extensions, write, read_msh,
-                                       {.written = kinds, .readable = kinds, .has_tags = true, .has_names = true}};
+constinit const MeshFormat mesh_format{
+    "msh",      "Gmsh mesh, versions 4.1 and 2.2",
+    extensions, write,
+    read_msh,   {.written = all_kinds, .readable = all_kinds, .has_tags = true, .has_names = true}};
 
 }  // namespace pcbmesh::formats::msh

@@ -55,16 +55,17 @@ void write_nodes(const WriteJob& job, Meter& meter) {
 
 template <std::size_t width>
 void write_rows_of(FileSink& sink, std::int32_t tag, std::int64_t id, std::span<const std::int64_t> corners) {
-  std::array<std::int32_t, 3 + width> fields{0, tag, tag};
-  const std::size_t num_rows = corners.size() / width;
-  char* to = sink.room(num_rows * sizeof fields);
-  for (std::size_t row = 0; row < num_rows; ++row) {
-    fields[0] = static_cast<std::int32_t>(id++);
-    for (std::size_t i = 0; i < width; ++i) fields[3 + i] = static_cast<std::int32_t>(corners[row * width + i] + 1);
-    std::memcpy(to, fields.data(), sizeof fields);
-    to += sizeof fields;
+  constexpr std::size_t row = (3 + width) * sizeof tag;
+  const std::size_t num_bytes = corners.size() / width * row;
+  char* to = sink.room(num_bytes);
+  const std::int64_t* from = corners.data();
+  for (char* const end = to + num_bytes; to != end; to += row, from += width) {
+    store(to, static_cast<std::int32_t>(id++));
+    store(to + sizeof tag, tag);
+    store(to + 2 * sizeof tag, tag);
+    for (std::size_t i = 0; i < width; ++i) store(to + (3 + i) * sizeof tag, static_cast<std::int32_t>(from[i] + 1));
   }
-  sink.advance(num_rows * sizeof fields);
+  sink.advance(num_bytes);
 }
 
 void write_rows_binary(FileSink& sink, const mesh::ElementBlock& block, std::int64_t id, std::span<const std::int64_t> nodes) {

@@ -101,16 +101,16 @@ void write_nodes(const WriteJob& job, Meter& meter) {
 /// One element per row: its tag, then its nodes' tags, counted from 1.
 template <std::size_t width>
 void write_rows_binary(FileSink& sink, std::int64_t tag, std::span<const std::int64_t> corners) {
-  std::array<std::int64_t, 1 + width> fields;
-  const std::size_t num_rows = corners.size() / width;
-  char* to = sink.room(num_rows * sizeof fields);
-  for (std::size_t row = 0; row < num_rows; ++row) {
-    fields[0] = tag++;
-    for (std::size_t i = 0; i < width; ++i) fields[1 + i] = corners[row * width + i] + 1;
-    std::memcpy(to, fields.data(), sizeof fields);
-    to += sizeof fields;
+  constexpr std::size_t row = (1 + width) * sizeof tag;
+  const std::size_t num_bytes = corners.size() / width * row;
+  char* to = sink.room(num_bytes);
+  const std::int64_t* from = corners.data();
+  for (char* const end = to + num_bytes; to != end; to += row, from += width) {
+    // Value by value: rows put together elsewhere first would be read back before they have left the processor.
+    store(to, tag++);
+    for (std::size_t i = 0; i < width; ++i) store(to + (1 + i) * sizeof tag, from[i] + 1);
   }
-  sink.advance(num_rows * sizeof fields);
+  sink.advance(num_bytes);
 }
 
 void write_rows_text(FileSink& sink, std::size_t width, std::int64_t tag, std::span<const std::int64_t> corners) {

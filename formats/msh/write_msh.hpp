@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <span>
@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "formats/sink/file_sink.hpp"
+#include "formats/sink/meter.hpp"
 #include "pcbmesh/base/progress.hpp"
 #include "pcbmesh/formats/registry.hpp"
 #include "pcbmesh/mesh/mesh_source.hpp"
@@ -47,6 +48,11 @@ void require_fits_22(const mesh::MeshSource& source, const std::filesystem::path
 [[nodiscard]] std::uint64_t expected_bytes_41(const mesh::MeshSource& source, bool binary);
 [[nodiscard]] std::uint64_t expected_bytes_22(const mesh::MeshSource& source, bool binary);
 
+template <class Value>
+void store(char* to, Value value) {
+  std::memcpy(to, &value, sizeof value);
+}
+
 /// Faces and cells together.
 [[nodiscard]] std::int64_t num_elements(const mesh::MeshSource& source);
 
@@ -56,21 +62,5 @@ void write_opening(const WriteJob& job, std::string_view version);
 /// Scaled coordinates of all nodes in id order, block by block. `first` is the id of the block's first node, from 0.
 using NodeVisit = std::function<void(std::int64_t first, std::span<const std::array<double, 3>> nodes)>;
 void visit_nodes(const WriteJob& job, const NodeVisit& visit);
-
-/// Reports progress over nodes and elements without a call per block.
-class Meter {
- public:
-  Meter(const Progress& progress, std::int64_t total) : progress_(progress), total_(std::max<std::int64_t>(total, 1)) {}
-  /// @throws Error cancelled (103).
-  void add(std::int64_t count) {
-    done_ += count;
-    if ((++calls_ & 63U) == 0) progress_.at("write", static_cast<double>(done_) / static_cast<double>(total_));
-  }
-
- private:
-  const Progress& progress_;
-  std::int64_t total_, done_ = 0;
-  std::uint32_t calls_ = 0;
-};
 
 }  // namespace pcbmesh::formats::msh

@@ -94,7 +94,8 @@ constexpr KindSet kinds =
 
 }  // namespace
 
-constinit const MeshFormat mesh_format{"nastran", "Nastran bulk data", extensions, write, nullptr,
-                                       {.written = kinds, .readable = 0, .has_tags = true, .has_names = false}};
+constinit const MeshFormat mesh_format{"nastran",  "Nastran bulk data",
+                                       extensions, write,
+                                       nullptr,    {.written = kinds, .readable = 0, .has_tags = true, .has_names = false}};
 
 }  // namespace pcbmesh::formats::nastran

@@ -17,8 +17,7 @@
 
 namespace pcbmesh::formats {
 
-FolderSink::FolderSink(const std::filesystem::path& target, std::span<const std::string_view> names)
-    : names_(names) {
+FolderSink::FolderSink(const std::filesystem::path& target, std::span<const std::string_view> names) : names_(names) {
   std::filesystem::path name = target;
   if (!name.has_filename()) name = name.parent_path();  // "board.elmer/"
   target_ = name;
@@ -50,11 +49,12 @@ void FolderSink::require_replaceable() const {
   for (const auto& entry : std::filesystem::directory_iterator(target_)) {
     const std::string name = entry.path().filename().string();
     if (std::ranges::find(names_, name) == names_.end() || !entry.is_regular_file())
-      throw Error(ErrorCode::write_failed,
-                  fmt::format("the folder holds '{}', which is not of this format, and the whole folder would be replaced; give "
-                              "another name",
-                              name),
-                  {.file = target_.string()});
+      throw Error(
+          ErrorCode::write_failed,
+          fmt::format("the folder holds '{}', which is not of this format, and the whole folder would be replaced; give "
+                      "another name",
+                      name),
+          {.file = target_.string()});
   }
 }
 
@@ -69,7 +69,8 @@ void FolderSink::commit() {
   if (::renameat2(AT_FDCWD, part_.c_str(), AT_FDCWD, target_.c_str(), RENAME_NOREPLACE) == 0) {
     part_.clear();
   } else if (errno == EEXIST) {
-    if (::renameat2(AT_FDCWD, part_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) != 0) fail(errno, "replace the folder");
+    if (::renameat2(AT_FDCWD, part_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) != 0)
+      fail(errno, "replace the folder");
     // What lies under the other name now is the old folder; the destructor removes it.
   } else {
     fail(errno, "rename the folder");

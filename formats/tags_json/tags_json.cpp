@@ -10,6 +10,7 @@
 
 #include "formats/sink/file_sink.hpp"
 #include "pcbmesh/mesh/group_names.hpp"
+#include "pcbmesh/mesh/net_measures.hpp"
 
 namespace pcbmesh::formats::tags_json {
 namespace {
@@ -53,6 +54,32 @@ Json volumes(const mesh::PrismMesh& mesh) {
   return out;
 }
 
+Json model_json(const Dispersion& dispersion) {
+  Json model{{"kind", name_of(dispersion.kind)}};
+  if (dispersion.kind == DispersionKind::constant) return model;
+  model["eps_inf"] = dispersion.eps_inf;
+  if (dispersion.kind == DispersionKind::djordjevic_sarkar) {
+    model["slope"] = dispersion.slope;
+    model["low_hz"] = dispersion.low_hz;
+    model["high_hz"] = dispersion.high_hz;
+    return model;
+  }
+  model["poles"] = Json::array();
+  for (const DebyePole& pole : dispersion.poles)
+    model["poles"].push_back({{"delta_eps", pole.delta_eps}, {"relaxation_hz", pole.relaxation_hz}});
+  return model;
+}
+
+Json roughness_json(const Roughness& roughness) {
+  Json out{{"kind", name_of(roughness.kind)}};
+  if (roughness.kind == RoughnessKind::hammerstad || roughness.kind == RoughnessKind::groisse) out["rms_m"] = roughness.rms_m;
+  if (roughness.kind == RoughnessKind::huray) {
+    out["nodule_radius_m"] = roughness.nodule_radius_m;
+    out["surface_ratio"] = roughness.surface_ratio;
+  }
+  return out;
+}
+
 Json materials(const mesh::PrismMesh& mesh) {
   Json out = Json::array();
   for (const board::Material& material : mesh.materials())
@@ -60,16 +87,21 @@ Json materials(const mesh::PrismMesh& mesh) {
                    {"eps_r", material.eps_r},
                    {"tan_delta", material.tan_delta},
                    {"mu_r", material.mu_r},
-                   {"sigma_s_per_m", material.sigma_s_per_m}});
+                   {"sigma_s_per_m", material.sigma_s_per_m},
+                   {"at_hz", material.at_hz > 0 ? Json(material.at_hz) : Json(nullptr)},
+                   {"model", model_json(material.dispersion)},
+                   {"roughness", roughness_json(material.roughness)},
+                   {"assumed", material.is_assumed},
+                   {"source", material.source.empty() ? Json(nullptr) : Json(material.source)}});
   return out;
 }
 
-Json faces(const mesh::PrismMesh& mesh) {
+Json faces(const mesh::PrismMesh& mesh, std::int32_t first_face_id) {
   Json out = Json::array();
   const std::vector<std::string> names = names_of(mesh.face_tags());
   for (std::size_t i = 0; i < names.size(); ++i) {
     const mesh::FaceTag& tag = mesh.face_tags()[i];
-    out.push_back({{"id", tag.id},
+    out.push_back({{"id", tag.id + first_face_id},
                    {"dimension", 2},
                    {"name", names[i]},
                    {"kind", mesh::name_of(tag.kind)},
@@ -126,12 +158,21 @@ Json layers(const mesh::PrismMesh& mesh) {
 }
 
 Json nets(const mesh::PrismMesh& mesh) {
-  std::vector<bool> has_cells(mesh.nets().size(), false);
-  for (const mesh::VolumeTag& tag : mesh.volume_tags())
-    if (tag.net >= 0 && tag.num_prisms > 0) has_cells[static_cast<std::size_t>(tag.net)] = true;
   Json out = Json::array();
-  for (std::size_t i = 0; i < has_cells.size() && i < mesh.net_pieces().size(); ++i)
-    if (has_cells[i] && mesh.net_pieces()[i] >= 0) out.push_back({{"name", mesh.nets()[i]}, {"pieces", mesh.net_pieces()[i]}});
+  const std::vector<mesh::NetMeasure> measures = mesh::measure_nets(mesh);
+  for (std::size_t i = 0; i < measures.size(); ++i) {
+    const mesh::NetMeasure& net = measures[i];
+    if (net.area_m2 <= 0) continue;
+    const std::int32_t pieces = i < mesh.net_pieces().size() ? mesh.net_pieces()[i] : -1;
+    Json ports = Json::array();
+    for (const std::int32_t port : net.ports) ports.push_back(mesh.ports()[static_cast<std::size_t>(port)].name);
+    out.push_back({{"name", mesh.nets()[i]},
+                   {"pieces", pieces >= 0 ? Json(pieces) : Json(nullptr)},
+                   {"num_cells", net.num_prisms},
+                   {"volume_m3", net.volume_m3},
+                   {"area_m2", net.area_m2},
+                   {"ports", std::move(ports)}});
+  }
   return out;
 }
 
@@ -160,7 +201,7 @@ Json bounding_box(const mesh::PrismMesh& mesh) {
 
 }  // namespace
 
-void write_tags(const mesh::PrismMesh& mesh, const std::filesystem::path& file, LengthUnit unit,
+void write_tags(const mesh::PrismMesh& mesh, const std::filesystem::path& file, LengthUnit unit, std::int32_t first_face_id,
                 const mesh::MeshSource* written) {
   Json out;
   out["schema_version"] = schema_version;
@@ -168,11 +209,12 @@ void write_tags(const mesh::PrismMesh& mesh, const std::filesystem::path& file, 
   out["bounding_box_m"] = bounding_box(mesh);
   out["layers"] = layers(mesh);
   out["volumes"] = volumes(mesh);
-  out["faces"] = faces(mesh);
+  out["faces"] = faces(mesh, first_face_id);
   if (written != nullptr)
     for (const mesh::ElementGroup& group : written->groups())
       for (Json& entry : out[group.dimension == 3 ? "volumes" : "faces"])
-        if (entry["id"] == group.tag) entry[group.dimension == 3 ? "num_cells" : "num_faces"] = group.num_elements;
+        if (entry["id"] == group.tag + (group.dimension == 2 ? first_face_id : 0))
+          entry[group.dimension == 3 ? "num_cells" : "num_faces"] = group.num_elements;
   out["ports"] = ports(mesh);
   out["materials"] = materials(mesh);
   out["nets"] = nets(mesh);

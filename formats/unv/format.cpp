@@ -117,7 +117,8 @@ constexpr KindSet kinds = kind_set(triangle, quadrangle, tetrahedron, wedge, hex
 
 }  // namespace
 
-constinit const MeshFormat mesh_format{"unv", "Universal file of I-DEAS", extensions, write, nullptr,
-                                       {.written = kinds, .readable = 0, .has_tags = true, .has_names = true}};
+constinit const MeshFormat mesh_format{"unv",      "Universal file of I-DEAS",
+                                       extensions, write,
+                                       nullptr,    {.written = kinds, .readable = 0, .has_tags = true, .has_names = true}};
 
 }  // namespace pcbmesh::formats::unv

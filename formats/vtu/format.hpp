@@ -5,10 +5,17 @@
 
 namespace pcbmesh::formats::vtu {
 
-/// VTK unstructured grid for ParaView: the prisms as cells in prism-id order, with cell arrays volume_tag, layer_id,
-/// material_id and net_id (-1 = no net). Raw appended data, streamed. Wedges in the order VTK up to 9.6 documents
-/// (bottom triangle's normal points outwards: 0 2 1 3 5 4 of ours), which gmsh, meshio and MFEM expect too.
-/// Writes only. There is one kind of file: `binary` and `version` of the options change nothing.
+/// VTK unstructured grid for ParaView: cells in file order with cell arrays volume_tag, layer, material, net (indices into the
+/// tables of tags.json, -1 = none), region and quality; with `faces` also the tagged faces, in front, with face_tag. Appended
+/// raw bytes, base64 or text; packed with zlib or LZ4 on request. Node numbers have 32 bits where these suffice.
+/// Reads every encoding VTK and meshio write.
 extern const MeshFormat mesh_format;
+
+/// The same cut into parts of equal numbers of cells, each a .vtu in a folder named like the file, and the .pvtu that lists
+/// them. Points on the cuts are repeated in each part.
+extern const MeshFormat parallel_format;
+
+/// One .vtu for each group, in a folder named like the file, and the .vtm that lists them as named blocks.
+extern const MeshFormat multiblock_format;
 
 }  // namespace pcbmesh::formats::vtu

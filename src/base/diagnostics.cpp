@@ -13,10 +13,14 @@ void Diagnostics::warn(std::string_view code, std::string_view text, Spot spot) 
   add(Severity::warning, code, text, std::move(spot));
 }
 
-void Diagnostics::add(Severity severity, std::string_view code, std::string_view text, Spot spot) {
+void Diagnostics::assume(Severity severity, std::string_view code, std::string_view text, Spot spot) {
+  add(severity, code, text, std::move(spot), true);
+}
+
+void Diagnostics::add(Severity severity, std::string_view code, std::string_view text, Spot spot, bool is_assumption) {
   auto found = std::find_if(entries_.begin(), entries_.end(), [&](const Diagnostic& d) { return d.code == code; });
   if (found == entries_.end()) {
-    entries_.push_back({severity, std::string(code), std::string(text), 0, {}});
+    entries_.push_back({severity, std::string(code), std::string(text), 0, {}, is_assumption});
     found = std::prev(entries_.end());
   }
   ++found->count;

@@ -10,6 +10,7 @@
 #include "formats/sink/file_sink.hpp"
 #include "pcbmesh/base/error.hpp"
 #include "pcbmesh/formats/registry.hpp"
+#include "pcbmesh/pipeline/write_outputs.hpp"
 #include "pcbmesh/validation/codes.hpp"
 #include "pcbmesh/validation/outputs.hpp"
 #include "pcbmesh/validation/report.hpp"
@@ -20,7 +21,7 @@ namespace pcbmesh::cli {
 namespace {
 
 struct Options {
-  std::string mesh, tags, format, explain, junit, sarif, html, offenders;
+  std::string mesh, tags, format, explain, junit, sarif, html, offenders, netlist, board;
   std::string fail_on = "error";
   bool no_tags = false, json = false, quiet = false, list = false;
   int threads = 2;
@@ -86,7 +87,20 @@ int run(const Options& options) {
   progress.at("read", 0);
   const mesh::MeshData mesh = formats::read_mesh(options.mesh, options.format, progress);
   progress.at("check", 0.5);
-  const validation::Report report = validation::check(mesh, tags.empty() ? nullptr : &expectation, {options.threads});
+  validation::Expectation netlist;
+  validation::CheckOptions check{.num_threads = options.threads};
+  if (!options.netlist.empty()) {
+    if (tags.empty())
+      throw Error(ErrorCode::usage, "--netlist compares nets, so it needs the tags.json of the mesh: give --tags");
+    netlist = validation::read_expectation(options.netlist);
+    check.netlist = &netlist;
+  }
+  validation::Report report = validation::check(mesh, tags.empty() ? nullptr : &expectation, check);
+  if (!options.board.empty()) {
+    progress.at("board", 0.9);
+    pipeline::name_features(formats::read_board(options.board, "", progress).board, tags.empty() ? 1.0 : expectation.unit_m,
+                            report);
+  }
   clear_progress();
   write_reports(options, report, mesh, threshold);
   if (options.json) {
@@ -107,6 +121,10 @@ Command add_check_command(CLI::App& program) {
   auto options = std::make_shared<Options>();
   command->add_option("mesh", options->mesh, "Mesh file (.msh, .mesh; .gz and .xz are unpacked)");
   command->add_option("--tags", options->tags, "tags.json to check against (default: the one beside the mesh)");
+  command->add_option("--netlist", options->netlist, "Judge nets by the tags.json of another mesh of the same layout")
+      ->check(CLI::ExistingFile);
+  command->add_option("--board", options->board, "Board file: findings about nets name its nearest features")
+      ->check(CLI::ExistingFile);
   command->add_flag("--no-tags", options->no_tags, "Check only what the mesh itself promises");
   command->add_option("--format", options->format, "Format of the mesh (default: by content and name)");
   command->add_flag("--json", options->json, "Print the report as JSON");

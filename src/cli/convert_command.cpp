@@ -42,14 +42,16 @@ void say_what_is_lost(const mesh::MeshData& mesh, const mesh::MeshDataSource& re
   static constexpr const char* others[] = {"points", "lines"};
   for (std::size_t i = 0; i < mesh.num_other_elements.size() && i < 2; ++i)
     if (mesh.num_other_elements[i] > 0)
-      note(fmt::format("{} {} of the input are left out; meshes here hold faces and cells", mesh.num_other_elements[i], others[i]));
+      note(fmt::format("{} {} of the input are left out; meshes here hold faces and cells", mesh.num_other_elements[i],
+                       others[i]));
   if (read.num_untagged_cells() > 0)
     note(fmt::format("{} cells have no tag; they are written as the group 'untagged'", read.num_untagged_cells()));
   std::int64_t num_faces = 0;
   for (const mesh::ElementBlock& block : source.blocks())
     if (mesh::dimension_of(block.kind) == 2 && format.scope.written != 0 && !formats::holds(format.scope.written, block.kind))
       num_faces += block.count;
-  if (num_faces > 0) note(fmt::format("{} tagged faces are left out; {} holds none of their kind here", num_faces, format.name));
+  if (num_faces > 0)
+    note(fmt::format("{} tagged faces are left out; {} holds none of their kind here", num_faces, format.name));
   if (format.scope.written != 0 && !format.scope.has_names && !source.groups().empty())
     note(fmt::format("names of groups are not carried by {}; their tags are", format.name));
 }
@@ -60,7 +62,8 @@ int run(const Options& options) {
     throw Error(ErrorCode::usage, "the output would overwrite the input; give another name", {.file = options.out});
   const formats::MeshFormat* format = formats::find_mesh_format(options.out, options.to);
   if (format == nullptr || format->write == nullptr)
-    throw Error(ErrorCode::usage, "no mesh format that pcbmesh writes has this ending; 'pcbmesh formats' lists them, --to NAME picks one",
+    throw Error(ErrorCode::usage,
+                "no mesh format that pcbmesh writes has this ending; 'pcbmesh formats' lists them, --to NAME picks one",
                 {.file = options.out});
   const Progress progress = terminal_progress(options.quiet);
   progress.at("read", 0);
@@ -73,8 +76,10 @@ int run(const Options& options) {
   mesh::MeshSource& source = tetrahedra ? static_cast<mesh::MeshSource&>(*tetrahedra) : read;
   progress.at("write", 0);
   const LengthUnit unit = options.unit.empty() ? LengthUnit::metre : parse_length_unit(options.unit);
-  formats::write_mesh(source, options.out, {!options.ascii, unit, options.msh_version, options.mfem_version}, options.to,
-                      progress);
+  formats::WriteMeshOptions write{.binary = !options.ascii, .unit = unit, .version = options.msh_version};
+  write.mfem_version = options.mfem_version;
+  write.faces = true;  // all of the input, where the format leaves the choice
+  formats::write_mesh(source, options.out, write, options.to, progress);
   clear_progress();
   if (!options.quiet) {
     say_what_is_lost(mesh, read, source, *format);

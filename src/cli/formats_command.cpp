@@ -85,9 +85,9 @@ int print_markdown() {
   fmt::print("| format | endings | write | read | orders written | elements (nodes of second order) | tags | names |\n");
   fmt::print("|---|---|---|---|---|---|---|---|\n");
   for (const MeshFormat* f : formats::mesh_formats())
-    fmt::print("| {} | `{}` | {} | {} | {} | {} | {} | {} |\n", f->title, fmt::join(f->extensions, "` `"), yes(f->write != nullptr),
-               yes(f->read != nullptr), orders_of(f->scope.written), shapes_of(f->scope.written), yes(f->scope.has_tags),
-               yes(f->scope.has_names));
+    fmt::print("| {} | `{}` | {} | {} | {} | {} | {} | {} |\n", f->title, fmt::join(f->extensions, "` `"),
+               yes(f->write != nullptr), yes(f->read != nullptr), orders_of(f->scope.written), shapes_of(f->scope.written),
+               yes(f->scope.has_tags), yes(f->scope.has_names));
   return 0;
 }
 
@@ -96,7 +96,8 @@ int print_text() {
   for (const formats::BoardFormat* f : formats::board_formats())
     fmt::print("  {:<12} {:<24} {}\n", f->name, fmt::format("{}", fmt::join(f->extensions, " ")), f->title);
   fmt::print("  Boards and meshes may be packed: .gz and .xz are unpacked on the fly.\n\nMeshes\n");
-  fmt::print("  {:<9} {:<13} {:<6} {:<5} {:<7} {:<5} {:<6} {}\n", "", "endings", "write", "read", "orders", "tags", "names", "");
+  fmt::print("  {:<9} {:<13} {:<6} {:<5} {:<7} {:<5} {:<6} {}\n", "", "endings", "write", "read", "orders", "tags", "names",
+             "");
   for (const MeshFormat* f : formats::mesh_formats())
     fmt::print("  {:<9} {:<13} {:<6} {:<5} {:<7} {:<5} {:<6} {}\n", f->name, fmt::format("{}", fmt::join(f->extensions, " ")),
                yes(f->write != nullptr), yes(f->read != nullptr), orders_of(f->scope.written), yes(f->scope.has_tags),

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,10 +12,14 @@
 #include "pcbmesh/formats/registry.hpp"
 #include "pcbmesh/pipeline/mesh_board.hpp"
 #include "pcbmesh/pipeline/write_outputs.hpp"
+#include "pcbmesh/view/report.hpp"
 #include "src/cli/commands.hpp"
 #include "src/cli/explain_text.hpp"
+#include "src/cli/mesh_or_draw.hpp"
 #include "src/cli/mesh_report.hpp"
+#include "src/cli/page_contents.hpp"
 #include "src/cli/quality_text.hpp"
+#include "src/cli/solver_output.hpp"
 #include "src/cli/study_options.hpp"
 #include "src/cli/terminal.hpp"
 
@@ -21,11 +27,11 @@ namespace pcbmesh::cli {
 namespace {
 
 struct Options {
-  std::string board, from, to, msh_version, mfem_version;
+  std::string board, from, to, msh_version, mfem_version, html, compression = "none", vtk_wedge = "legacy";
   std::vector<std::string> outputs;
-  bool ascii = false, no_check = false, json = false, dry_run = false, quality = false, explain = false, quiet = false,
-       warnings_as_errors = false;
-  int threads = 2;
+  bool ascii = false, base64 = false, faces = false, no_check = false, json = false, dry_run = false, forecast = false,
+       quality = false, explain = false, quiet = false, warnings_as_errors = false;
+  int threads = 2, num_parts = 2, index_bits = 0;
   std::shared_ptr<StudyOptions> study;
 };
 
@@ -38,21 +44,31 @@ void require_no_warnings(const Options& options, const Diagnostics& diagnostics)
 pipeline::OutputOptions output_options(const Options& options, LengthUnit unit) {
   if (options.outputs.empty() && !options.dry_run)
     throw Error(ErrorCode::usage, "no output: give -o board.msh, or --dry-run for the counts alone");
-  return {{options.outputs.begin(), options.outputs.end()},
-          options.to,
-          {!options.ascii, unit, options.msh_version, options.mfem_version},
-          !options.no_check,
-          options.threads};
+  formats::WriteMeshOptions write{.binary = !options.ascii, .unit = unit, .version = options.msh_version};
+  write.compression = options.compression == "zlib"  ? formats::Compression::zlib
+                      : options.compression == "lz4" ? formats::Compression::lz4
+                                                     : formats::Compression::none;
+  write.mfem_version = options.mfem_version;
+  write.base64 = options.base64;
+  write.vtk_wedge = options.vtk_wedge == "parametric" ? formats::VtkWedge::parametric : formats::VtkWedge::legacy;
+  write.faces = options.faces;
+  write.num_parts = options.num_parts;
+  write.index_bits = options.index_bits;
+  write.num_threads = options.threads;
+  return {{options.outputs.begin(), options.outputs.end()}, options.to, write, !options.no_check, options.threads};
 }
 
 int run(const Options& options) {
   const study::Study study = study_from(*options.study);
-  const pipeline::OutputOptions output = output_options(options, study.unit);
+  pipeline::OutputOptions output = output_options(options, study.unit);
+  prepare_for_solver(study, options.board, output);
   pipeline::require_writable(output, options.board);
   const Progress progress = terminal_progress(options.quiet);
   progress.at("read", 0);
   const formats::ReadBoardResult read = formats::read_board(options.board, options.from, progress);
-  pipeline::MeshBoardResult result = pipeline::mesh_board(read.board, study, progress);
+  pipeline::MeshBoardResult result = mesh_or_draw(
+      read.board, study, options.outputs.empty() ? std::filesystem::path() : std::filesystem::path(options.outputs.front()),
+      progress);
   Diagnostics all = read.diagnostics;
   all.merge(result.diagnostics);
   result.diagnostics = std::move(all);
@@ -65,22 +81,44 @@ int run(const Options& options) {
   const bool is_kept = !options.dry_run || options.json;
   if (is_kept || options.quality) mesh_run.quality = layering::quality_report(result.mesh);
   if (is_kept || options.explain) mesh_run.layers = layering::explain_layers(result.mesh, result.layers);
+  if (is_kept || options.forecast) mesh_run.measured = pipeline::measured(result.mesh);
   pipeline::OutputResult written;
+  std::optional<formats::Deck> deck;
   if (!options.dry_run) {
+    require_solver_deck(result, output.meshes.front());
     written = pipeline::write_outputs(result, output, progress);
-    if (written.report) mesh_run.check = &*written.report;
     mesh_run.second_order = written.second_order;
+    if (written.report) {
+      const bool is_file = std::ranges::any_of(
+          output.meshes, [&](const auto& file) { return formats::find_mesh_format(file, output.format)->read != nullptr; });
+      pipeline::name_features(read.board, is_file ? metres_per(study.unit) : 1.0, *written.report);
+      mesh_run.check = &*written.report;
+    }
     const std::filesystem::path summary = pipeline::file_beside(output.meshes.front(), ".report.json");
     mesh_run.files = written.files;
+    if (result.resolved.solver != study::Solver::none) {
+      Diagnostics assumed;
+      deck = write_solver_deck(result, output.meshes.front(), assumed);
+      if (!options.quiet) print_diagnostics(assumed);
+      result.diagnostics.merge(assumed);
+      for (const std::filesystem::path& file : deck->files) mesh_run.files.push_back(file.string());
+    }
     mesh_run.files.push_back(summary.string());
+    if (!options.html.empty()) {
+      progress.at("view", 0);
+      mesh_run.files.push_back(options.html);
+      pipeline::write_binary_file(options.html,
+                                  view::report_html(result.mesh, page_contents(mesh_run, metres_per(study.unit))));
+    }
     pipeline::write_text_file(summary, report_json(mesh_run));
   }
   clear_progress();
   if (options.json)
     fmt::print("{}\n", report_json(mesh_run));
   else if (!options.quiet)
-    fmt::print("{}{}{}", report_text(mesh_run), options.explain ? explain_text(result, mesh_run.layers) : "",
-               options.quality ? quality_text(mesh_run.quality) : "");
+    fmt::print("{}{}{}{}{}", report_text(mesh_run), options.forecast ? forecast_text(mesh_run) : "",
+               options.explain ? explain_text(result, mesh_run.layers) : "",
+               options.quality ? quality_text(mesh_run.quality) : "", deck ? run_text(*deck) : "");
   return written.report && !written.report->passed() ? 1 : 0;
 }
 
@@ -91,7 +129,11 @@ Command add_mesh_command(CLI::App& program) {
   auto options = std::make_shared<Options>();
   command->add_option("board", options->board, "Board file: KiCad .kicad_pcb or native .json; .gz and .xz are unpacked")
       ->required();
-  command->add_option("-o,--output", options->outputs, "Mesh file; its ending picks the format, see 'pcbmesh formats'; repeatable")
+  command
+      ->add_option(
+          "-o,--output", options->outputs,
+          "Mesh file; its ending picks the format (.msh, .vtu, .xdmf ...; see 'pcbmesh formats'); repeatable. With --for: a "
+          "folder for mesh and deck")
       ->allow_extra_args(false);
   constexpr const char* output = "Output";
   command->add_flag("--ascii", options->ascii, "Text instead of binary, where the format has both")->group(output);
@@ -101,10 +143,31 @@ Command add_mesh_command(CLI::App& program) {
   command->add_option("--mfem-version", options->mfem_version, "MFEM format: 1.3 (default, named sets) or 1.0")
       ->check(CLI::IsMember({"1.3", "1.0"}))
       ->group(output);
+  command->add_option("--compress", options->compression, "VTK and HDF5 files: none (default), zlib or, for VTU, lz4")
+      ->check(CLI::IsMember({"none", "zlib", "lz4"}))
+      ->group(output);
+  command->add_flag("--base64", options->base64, "VTU: arrays as base64 text, which makes it valid XML")->group(output);
+  command
+      ->add_option(
+          "--vtk-wedge", options->vtk_wedge,
+          "Corners of wedges in VTU and VTKHDF: legacy (default; VTK to 9.6, meshio, Gmsh) or parametric (VTK from 9.7)")
+      ->check(CLI::IsMember({"legacy", "parametric"}))
+      ->group(output);
+  command->add_flag("--faces", options->faces, "VTU and PVTU: tagged faces as cells too")->group(output);
+  command->add_option("--parts", options->num_parts, "PVTU: number of parts (default 2)")
+      ->check(CLI::Range(1, 1000000))
+      ->group(output);
+  command->add_option("--index-bits", options->index_bits, "VTK and HDF5 files: 32 or 64 (default: 32 where they suffice)")
+      ->check(CLI::IsMember({0, 32, 64}))
+      ->group(output);
   command->add_option("--from", options->from, "Format of the board (default: by content and name)")->group(output);
   command->add_option("--to", options->to, "Format of the mesh (default: by ending)")->group(output);
+  command->add_option("--html", options->html, "Also write a page to look at: 3D view, findings, quality; one file, no network")
+      ->group(output);
   command->add_flag("--no-check", options->no_check, "Do not read the written mesh back and judge it")->group(output);
   command->add_flag("--dry-run", options->dry_run, "Do everything but write: exact counts")->group(output);
+  command->add_flag("--forecast", options->forecast, "Print what was forecast, the exact counts, unknowns and solver memory")
+      ->group(output);
   command->add_flag("--json", options->json, "Print the report as JSON")->group(output);
   command->add_flag("--quality", options->quality, "Print quality by layer, material and net, histograms and the worst prisms")
       ->group(output);
@@ -126,6 +189,7 @@ Command add_mesh_command(CLI::App& program) {
       "  pcbmesh mesh board.kicad_pcb -o board.msh\n"
       "  pcbmesh mesh board.kicad_pcb --nets /USB_P,/USB_N --frequency 10GHz -o usb.msh -o usb.vtu\n"
       "  pcbmesh mesh board.kicad_pcb --region 10mm,-30mm,25mm,-18mm --hollow GND -o part.msh\n"
+      "  pcbmesh mesh board.kicad_pcb --nets /USB_P,/USB_N --study usb.json --for getdp -o out/\n"
       "  pcbmesh mesh examples/serpentine.json --air 0 --policy minimum --sublayers floor -o serpentine.msh");
   return {command, [options] { return run(*options); }};
 }

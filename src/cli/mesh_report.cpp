@@ -12,6 +12,7 @@
 #include "pcbmesh/base/version.hpp"
 #include "src/cli/diagnostics_json.hpp"
 #include "src/cli/explain_text.hpp"
+#include "src/cli/forecast_report.hpp"
 #include "src/cli/quality_text.hpp"
 #include "src/cli/terminal.hpp"
 
@@ -118,6 +119,9 @@ std::string report_json(const MeshRun& run) {
            {"quality_report", quality_json(run.quality)},
            {"cpu_s", times},
            {"peak_memory_mib", peak_memory_mib()},
+           {"forecast", forecast_json(r.forecast)},
+           {"measured", run.measured ? forecast_json(*run.measured) : Json(nullptr)},
+           {"assumptions", assumptions_json(r.diagnostics)},
            {"diagnostics", diagnostics_json(r.diagnostics)},
            {"check", run.check == nullptr ? Json(nullptr) : Json::parse(validation::to_json(*run.check))},
            {"files", run.files}};
@@ -149,10 +153,10 @@ std::string report_text(const MeshRun& run) {
       line("quality", fmt::format("triangles {:.4f}, prisms {:.4f} (by volume {:.4f}, worst {:.4f})", r.quality.mean_triangle,
                                   r.quality.mean_prism, r.quality.volume_weighted_prism, r.quality.min_prism));
   if (run.second_order)
-    out += line("order 2", fmt::format("{} chords of the plane lie on their arcs; {} stay straight, because {} triangles would fold",
-                                       grouped(run.second_order->num_curved_edges),
-                                       grouped(run.second_order->num_straightened_edges),
-                                       grouped(run.second_order->num_folded_triangles)));
+    out += line("order 2",
+                fmt::format("{} chords of the plane lie on their arcs; {} stay straight, because {} triangles would fold",
+                            grouped(run.second_order->num_curved_edges), grouped(run.second_order->num_straightened_edges),
+                            grouped(run.second_order->num_folded_triangles)));
   double total = 0;
   for (const pipeline::StepTime& t : r.times) total += t.cpu_s;
   out += line("effort", fmt::format("{:.2f} s CPU to mesh, peak memory {:.0f} MiB", total, peak_memory_mib()));
@@ -164,6 +168,13 @@ std::string report_text(const MeshRun& run) {
       errors += f.severity == validation::FindingSeverity::error ? f.count : 0;
     out += line("check", run.check->passed() ? fmt::format("passed: {} checks, no error", run.check->checks.size())
                                              : fmt::format("FAILED with {} errors", grouped(errors)));
+    std::int64_t as_laid_out = 0, judged = 0;
+    for (const validation::NetVerdict& net : run.check->nets) {
+      if (net.expected_pieces >= 0) ++judged;
+      if (net.expected_pieces == net.pieces) ++as_laid_out;
+    }
+    out += line("nets", fmt::format("{} of {} connected as in the layout, {} not judged", as_laid_out, judged,
+                                    static_cast<std::int64_t>(run.check->nets.size()) - judged));
     for (const validation::Finding& f : run.check->findings)
       out += fmt::format("    {} [{}] {}\n", f.severity == validation::FindingSeverity::error ? "error" : "warning", f.code,
                          f.text);

@@ -22,6 +22,7 @@ struct MeshRun {
   std::vector<layering::LayerExplanation> layers;  ///< one per slab
   const validation::Report* check = nullptr;       ///< null: not checked
   std::vector<std::string> files;                  ///< written, in order
+  std::optional<pipeline::Forecast> measured{};    ///< exact sizes
   std::optional<extrude::SecondOrderStatistics> second_order{};
 };
 
@@ -29,5 +30,8 @@ struct MeshRun {
 [[nodiscard]] std::string report_json(const MeshRun& run);
 /// The same for people, a dozen lines.
 [[nodiscard]] std::string report_text(const MeshRun& run);
+
+/// What was forecast beside what came, unknowns and solver memory.
+[[nodiscard]] std::string forecast_text(const MeshRun& run);
 
 }  // namespace pcbmesh::cli

@@ -56,6 +56,7 @@ std::shared_ptr<StudyOptions> add_study_options(CLI::App& command) {
   command.add_option("--air-above", o->air_above, "Air above the board")->group(domain);
   command.add_option("--air-below", o->air_below, "Air below the board")->group(domain);
   command.add_option("--air-around", o->air_around, "Air beside the whole board (default 0)")->group(domain);
+  o->fabrication = add_fabrication_options(command);
   add_physics_options(command, *o);
   constexpr const char* sizes = "Sizes and heights";
   command
@@ -98,7 +99,8 @@ std::shared_ptr<StudyOptions> add_study_options(CLI::App& command) {
   command.add_option("--arc-sagitta", o->arc_sagitta, "Largest distance of chord and arc (default 5um)")->group(sizes);
   command.add_option("--unit", o->unit, "Unit written to the mesh: m (default), mm, um")->group(sizes);
   command.add_option("--split", o->split, "Write tets: three tetrahedra per prism, same nodes and tags")->group(sizes);
-  command.add_option("--order", o->order, "Order of the elements, 1 (default) or 2: arcs of the layout become curved")->group(sizes);
+  command.add_option("--order", o->order, "Order of the elements, 1 (default) or 2: arcs of the layout become curved")
+      ->group(sizes);
   CLI::Option* wedge15 =
       command.add_flag("--wedge15", o->wedge15, "Order 2: prisms of 15 nodes (CalculiX, Elmer, Nastran)")->group(sizes);
   command.add_flag("--wedge18", o->wedge18, "Order 2: prisms of 18 nodes (default)")->excludes(wedge15)->group(sizes);
@@ -158,6 +160,7 @@ study::Study study_from(const StudyOptions& o) {
   if (o.order != 0) s.order = o.order;
   if (o.wedge15 || o.wedge18) s.wedge_nodes = o.wedge15 ? 15 : 18;
   if (o.max_prisms != 0) s.max_prisms = count("--max-prisms", o.max_prisms);
+  take_fabrication_options(*o.fabrication, s.fabrication);
   take_physics_options(o, s);
   study::check(s);
   return s;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "pcbmesh/study/study.hpp"
+#include "src/cli/fabrication_options.hpp"
 
 namespace pcbmesh::cli {
 
@@ -22,6 +23,7 @@ struct StudyOptions {
   double min_angle = 0, growth = 0, max_prisms = 0;
   std::optional<double> elements_per_wavelength, height_growth, target_quality, budget_prisms, budget_unknowns;
   std::optional<int> elements_per_dielectric, skin_depth_layers;
+  std::shared_ptr<FabricationOptions> fabrication;
 };
 
 /// Adds the flags to a command.

@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <utility>
 
 #include "pcbmesh/geometry/ring_contact.hpp"
+#include "src/compose/etch.hpp"
 
 namespace pcbmesh::compose {
 namespace {
@@ -20,32 +20,6 @@ using model::Body;
 using model::BodyKind;
 using model::BodyShape;
 using model::ModelParts;
-
-/// Rings of a figure, clipped; a convex ring stays simple when clipped, another keeps its mark.
-BodyShape shape_of(const geometry::Figure& figure, const study::Study& study, const Footprint& footprint, std::int64_t line) {
-  BodyShape shape;
-  shape.line = line;
-  for (Ring& ring : geometry::outline(figure, study.arcs, shape.simple))
-    if (Ring kept = clipped(std::move(ring), footprint.clip); kept.size() >= 3) shape.rings.push_back(std::move(kept));
-  return shape;
-}
-
-std::string_view short_net_name(const Board& board, std::int32_t net) {
-  return net < 0 ? std::string_view("none") : board.net_name(net);
-}
-
-/// Groups shapes by key in ascending order, so that bodies come out in one order whatever the file's.
-template <class Key>
-using Grouped = std::map<Key, std::vector<BodyShape>>;
-
-void append_body(ModelParts& parts, Body body, std::vector<BodyShape> shapes) {
-  const auto index = static_cast<std::int32_t>(parts.bodies.size());
-  parts.bodies.push_back(std::move(body));
-  for (BodyShape& shape : shapes) {
-    shape.body = index;
-    parts.shapes.push_back(std::move(shape));
-  }
-}
 
 /// Least width of a convex ring: over all edges, the farthest corner from the edge's line. 0 for others.
 Nm convex_width(const Ring& ring) {
@@ -105,6 +79,36 @@ std::vector<char> find_sheet_layers(const Board& board, const study::Study& stud
   return only_sheets;
 }
 
+BodyShape shape_of(const geometry::Figure& figure, const study::Study& study, const Footprint& footprint, std::int64_t line) {
+  BodyShape shape;
+  shape.line = line;
+  for (Ring& ring : geometry::outline(figure, study.arcs, shape.simple))
+    if (Ring kept = clipped(std::move(ring), footprint.clip); kept.size() >= 3) shape.rings.push_back(std::move(kept));
+  return shape;
+}
+
+std::string_view short_net_name(const Board& board, std::int32_t net) {
+  return net < 0 ? std::string_view("none") : board.net_name(net);
+}
+
+void append_body(ModelParts& parts, Body body, std::vector<BodyShape> shapes) {
+  const auto index = static_cast<std::int32_t>(parts.bodies.size());
+  parts.bodies.push_back(std::move(body));
+  for (BodyShape& shape : shapes) {
+    shape.body = index;
+    parts.shapes.push_back(std::move(shape));
+  }
+}
+
+std::int32_t material_of(const Board& board, std::int32_t copper_layer) {
+  const auto index = static_cast<std::size_t>(board.copper_layers()[static_cast<std::size_t>(copper_layer)]);
+  return board.stackup()[index].material;
+}
+
+void keep_open(ModelParts& parts, Nm width) {
+  parts.narrowest_feature_nm = parts.narrowest_feature_nm == 0 ? width : std::min(parts.narrowest_feature_nm, width);
+}
+
 void add_domain_and_board(const Footprint& footprint, const Stack& stack, ModelParts& parts) {
   const auto last = static_cast<std::int32_t>(stack.slabs.size()) - 1;
   const auto body = [&](std::string name, BodyKind kind) {
@@ -127,7 +131,7 @@ void add_domain_and_board(const Footprint& footprint, const Stack& stack, ModelP
 
 void add_copper(const Board& board, const study::Study& study, const std::vector<ResolvedRule>& rules,
                 const Footprint& footprint, const Stack& stack, ModelParts& parts, Diagnostics& diagnostics) {
-  Grouped<std::pair<std::int32_t, std::int32_t>> groups;  // (copper layer, net)
+  std::map<std::pair<std::int32_t, std::int32_t>, std::vector<BodyShape>> groups;  // (copper layer, net)
   for (const board::Shape& shape : board.shapes()) {
     const geometry::Box box = geometry::bounds(shape.figure);
     if (!box.touches(footprint.box)) {
@@ -142,76 +146,44 @@ void add_copper(const Board& board, const study::Study& study, const std::vector
     BodyShape rings = shape_of(shape.figure, study, footprint, shape.line);
     if (!rings.rings.empty()) groups[{shape.copper_layer, shape.net}].push_back(std::move(rings));
   }
-  for (auto& [key, shapes] : groups) {
-    const auto [copper_layer, net] = key;
-    const CopperPlace& place = stack.copper[static_cast<std::size_t>(copper_layer)];
-    const board::StackupLayer& layer =
-        board.stackup()[static_cast<std::size_t>(board.copper_layers()[static_cast<std::size_t>(copper_layer)])];
-    Body body{.name = fmt::format("copper {} on {}", short_net_name(board, net), board.copper_name(copper_layer)),
-              .kind = BodyKind::copper,
-              .material = layer.material,
-              .net = net,
-              .first_slab = place.low,
-              .last_slab = place.low,
-              .priority = copper_priority};
-    const study::ConductorMode mode = mode_of(study, rules, net, copper_layer);
-    body.hollow = mode == study::ConductorMode::hollow;
-    if (mode == study::ConductorMode::sheet) {
-      body.sheet = model::SheetPlace{place.sheet, layer.name, layer.thickness_nm};
+  for (std::int32_t layer = 0; layer < static_cast<std::int32_t>(stack.copper_slices.size()); ++layer) {
+    std::map<std::int32_t, std::vector<BodyShape>> by_net;
+    for (auto it = groups.lower_bound({layer, board::no_net}); it != groups.end() && it->first.first == layer; ++it)
+      by_net.emplace(it->first.second, std::move(it->second));
+    const CopperPlace& place = stack.copper[static_cast<std::size_t>(layer)];
+    for (auto& [net, shapes] : by_net) {
+      if (mode_of(study, rules, net, layer) != study::ConductorMode::sheet) continue;
+      const board::StackupLayer& copper =
+          board.stackup()[static_cast<std::size_t>(board.copper_layers()[static_cast<std::size_t>(layer)])];
+      Body body{.name = fmt::format("copper {} on {}", short_net_name(board, net), board.copper_name(layer)),
+                .kind = BodyKind::copper,
+                .material = copper.material,
+                .net = net,
+                .priority = copper_priority};
+      body.sheet = model::SheetPlace{place.sheet, copper.name, copper.thickness_nm};
       body.first_slab = body.last_slab = std::min(place.low, static_cast<std::int32_t>(stack.slabs.size()) - 1);
+      append_body(parts, std::move(body), shapes);
     }
-    append_body(parts, std::move(body), std::move(shapes));
+    std::erase_if(by_net,
+                  [&](const auto& item) { return mode_of(study, rules, item.first, layer) == study::ConductorMode::sheet; });
+    for (const CopperSlice& slice : stack.copper_slices[static_cast<std::size_t>(layer)])
+      for (auto& [net, shapes] : etched(by_net, slice.inset))
+        append_body(parts,
+                    {.name = fmt::format("copper {} on {}{}", short_net_name(board, net), board.copper_name(layer),
+                                         slice.inset > 0 ? fmt::format(" less {}", format_length(slice.inset)) : ""),
+                     .kind = BodyKind::copper,
+                     .material = material_of(board, layer),
+                     .net = net,
+                     .first_slab = slice.slabs.first,
+                     .last_slab = slice.slabs.last,
+                     .priority = copper_priority,
+                     .hollow = mode_of(study, rules, net, layer) == study::ConductorMode::hollow},
+                    std::move(shapes));
   }
-}
-
-void add_holes(const Board& board, const study::Study& study, const std::vector<ResolvedRule>& rules,
-               const Footprint& footprint, const Stack& stack, ModelParts& parts) {
-  Grouped<std::pair<std::int32_t, std::int32_t>> unplated;  // span
-  Grouped<std::array<std::int32_t, 3>> plated;              // span, net
-  for (const board::Drill& drill : board.drills()) {
-    if (!geometry::bounds(drill.figure).touches(footprint.box)) continue;
-    BodyShape rings = shape_of(drill.figure, study, footprint, drill.line);
-    if (rings.rings.empty()) continue;
-    if (drill.plated)
-      plated[{drill.first_copper, drill.last_copper, drill.net}].push_back(std::move(rings));
-    else
-      unplated[{drill.first_copper, drill.last_copper}].push_back(std::move(rings));
-  }
-  const auto last_copper = static_cast<std::int32_t>(board.copper_layers().size()) - 1;
-  const auto first_slab = [&](std::int32_t copper) { return stack.copper[static_cast<std::size_t>(copper)].low; };
-  const auto last_slab = [&](std::int32_t copper) { return stack.copper[static_cast<std::size_t>(copper)].high - 1; };
-  // A span within one layer that has no slab holds nothing.
-  for (auto& [span, shapes] : unplated) {
-    const auto [top, bottom] = span;
-    // A hole through all copper goes on through dielectric outside it.
-    const std::int32_t first = bottom == last_copper ? stack.first_board_slab : first_slab(bottom);
-    const std::int32_t last = top == 0 ? stack.last_board_slab : last_slab(top);
-    if (first > last) continue;
-    append_body(parts,
-                {.name = fmt::format("hole {} to {}", board.copper_name(top), board.copper_name(bottom)),
-                 .kind = BodyKind::hole,
-                 .material = stack.air,
-                 .first_slab = first,
-                 .last_slab = last,
-                 .priority = hole_priority},
-                std::move(shapes));
-  }
-  for (auto& [key, shapes] : plated) {
-    const auto [top, bottom, net] = key;
-    if (first_slab(bottom) > last_slab(top)) continue;
-    const auto stackup_index = static_cast<std::size_t>(board.copper_layers()[static_cast<std::size_t>(top)]);
-    append_body(parts,
-                {.name = fmt::format("barrel {} {} to {}", short_net_name(board, net), board.copper_name(top),
-                                     board.copper_name(bottom)),
-                 .kind = BodyKind::barrel,
-                 .material = board.stackup()[stackup_index].material,
-                 .net = net,
-                 .first_slab = first_slab(bottom),
-                 .last_slab = last_slab(top),
-                 .priority = barrel_priority,
-                 .hollow = mode_of(study, rules, net, -1) == study::ConductorMode::hollow},
-                std::move(shapes));
-  }
+  for (const std::vector<CopperSlice>& slices : stack.copper_slices)
+    for (const CopperSlice& slice : slices)
+      // Several tolerances must fit between one stair and the next.
+      if (slice.inset > 0) keep_open(parts, 4 * slice.inset);
 }
 
 void add_circles(const Board& board, const study::Study& study, const Footprint& footprint, ModelParts& parts) {

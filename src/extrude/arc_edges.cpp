@@ -222,7 +222,8 @@ SecondOrderStatistics curve(const mesh::PlanarMesh& planar, const SecondOrderOpt
         shape.middles[i] = edges.middles_m[static_cast<std::size_t>(sides[i])];
       }
       const double wanted = least_jacobian * straight_jacobian(shape);
-      if (least_bezier(shape) >= wanted && (!options.for_tetrahedra || least_of_tetrahedra(shape, vertices) >= wanted)) continue;
+      if (least_bezier(shape) >= wanted && (!options.for_tetrahedra || least_of_tetrahedra(shape, vertices) >= wanted))
+        continue;
       if (has_folded[t] == 0) ++statistics.num_folded_triangles;
       has_folded[t] = 1;
       again = true;

@@ -104,8 +104,7 @@ void SecondOrderSource::make_sets() {
   };
   for (std::int32_t k = 0; k < plan.num_levels(); ++k) {
     const std::int32_t below = k == 0 ? 0 : pattern_of_slab_[index(plan.slab_of_sublayer()[index(k - 1)])];
-    const std::int32_t above =
-        k == plan.num_sublayers() ? 0 : pattern_of_slab_[index(plan.slab_of_sublayer()[index(k)])];
+    const std::int32_t above = k == plan.num_sublayers() ? 0 : pattern_of_slab_[index(plan.slab_of_sublayer()[index(k)])];
     const Sets level = sets_of(below, above);
     vertices_of_level_.push_back(level.vertices);
     edges_of_level_.push_back(level.edges);
@@ -141,18 +140,19 @@ void SecondOrderSource::announce_blocks() {
   const auto points = mesh_.planar().points_m();
   for (std::size_t e = 0; e < edges_.size(); ++e)
     for (std::size_t i = 0; i < 2; ++i)
-      farthest = std::max(farthest, std::abs(middles_m_[e][i] -
-                                             (points[index(edges_[e][0])][i] + points[index(edges_[e][1])][i]) / 2));
+      farthest = std::max(farthest,
+                          std::abs(middles_m_[e][i] - (points[index(edges_[e][0])][i] + points[index(edges_[e][1])][i]) / 2));
   for (mesh::ElementGroup& group : groups_)
     for (std::size_t i = 0; i < 2 && group.num_elements > 0; ++i) {
       group.extent.min[i] -= farthest;
       group.extent.max[i] += farthest;
     }
   for (mesh::ElementBlock block : prisms_.blocks()) {
-    block.kind = block.kind == ElementKind::triangle     ? ElementKind::triangle6
-                 : block.kind == ElementKind::quadrangle ? with_face_nodes_ ? ElementKind::quadrangle9 : ElementKind::quadrangle8
-                 : with_face_nodes_                      ? ElementKind::wedge18
-                                                         : ElementKind::wedge15;
+    block.kind = block.kind == ElementKind::triangle ? ElementKind::triangle6
+                 : block.kind == ElementKind::quadrangle
+                     ? with_face_nodes_ ? ElementKind::quadrangle9 : ElementKind::quadrangle8
+                 : with_face_nodes_ ? ElementKind::wedge18
+                                    : ElementKind::wedge15;
     blocks_.push_back(block);
   }
 }
@@ -167,8 +167,8 @@ void SecondOrderSource::fill_nodes(std::int64_t first, std::span<std::array<doub
   }
   const auto points = mesh_.planar().points_m();
   const auto z = mesh_.plan().z_m();
-  auto strip = std::upper_bound(strips_.begin(), strips_.end(), first,
-                                [](std::int64_t id, const Strip& s) { return id < s.first; });
+  auto strip =
+      std::upper_bound(strips_.begin(), strips_.end(), first, [](std::int64_t id, const Strip& s) { return id < s.first; });
   for (auto to = out.begin(); to != out.end(); ++strip) {
     const Strip& s = *(strip - 1);
     const std::int64_t rank = std::max<std::int64_t>(0, first - s.first);
@@ -237,7 +237,8 @@ void SecondOrderSource::complete(ElementKind kind, std::span<const std::int64_t>
 
 void SecondOrderSource::visit(std::size_t block, const VisitNodes& visit) {
   const ElementKind kind = blocks_.at(block).kind;
-  const auto num_corners = static_cast<std::size_t>(mesh::corners_of(kind)), width = static_cast<std::size_t>(mesh::nodes_of(kind));
+  const auto num_corners = static_cast<std::size_t>(mesh::corners_of(kind)),
+             width = static_cast<std::size_t>(mesh::nodes_of(kind));
   std::vector<std::int64_t> rows(chunk * width);
   prisms_.visit(block, [&](std::span<const std::int64_t> corners) {
     const std::size_t count = corners.size() / num_corners;

@@ -19,7 +19,7 @@ constexpr std::uint8_t turns[6][6] = {{0, 1, 2, 3, 4, 5}, {1, 2, 0, 4, 5, 3}, {2
 
 /// Nodes of second order between two corners: edges, and diagonals of quadrangles, whose middle is that of the face.
 constexpr std::uint8_t no = 255;
-constexpr std::uint8_t wedge_mid[6][6] = {{no, 6, 7, 8, 15, 16},  {6, no, 9, 15, 10, 17},  {7, 9, no, 16, 17, 11},
+constexpr std::uint8_t wedge_mid[6][6] = {{no, 6, 7, 8, 15, 16},   {6, no, 9, 15, 10, 17},   {7, 9, no, 16, 17, 11},
                                           {8, 15, 16, no, 12, 13}, {15, 10, 17, 12, no, 14}, {16, 17, 11, 13, 14, no}};
 constexpr std::uint8_t quadrangle_mid[4][4] = {{no, 4, 8, 7}, {4, no, 5, 8}, {8, 5, no, 6}, {7, 8, 6, no}};
 /// Corners of the edges of a tetrahedron and a triangle, in the order of their nodes of second order.
@@ -50,7 +50,7 @@ ElementKind kind_after(ElementKind kind) {
 }
 
 int parts_of(ElementKind kind) {
-  return kind == ElementKind::wedge || kind == ElementKind::wedge18 ? 3
+  return kind == ElementKind::wedge || kind == ElementKind::wedge18            ? 3
          : kind == ElementKind::quadrangle || kind == ElementKind::quadrangle9 ? 2
                                                                                : 1;
 }

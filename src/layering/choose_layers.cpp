@@ -154,16 +154,21 @@ std::vector<int> sublayer_counts(std::span<const model::Slab> slabs, SublayerRul
   return counts;
 }
 
-std::vector<int> paper_counts(std::span<const model::Slab> slabs, HeightPolicy policy, double common_height_m) {
+double forecast_sublayers(const study::Study& study, const model::Slab& slab, double common_height_m) {
+  // The best mean may leave layers whole whatever their height.
+  if (study.paper_compat || study.sublayers == SublayerRule::none || study.sublayers == SublayerRule::best_mean) return 1;
+  return std::max(1.0, std::floor(height_m(slab) / common_height_m + ratio_tolerance));
+}
+
+std::vector<int> paper_counts(std::span<const model::Slab> slabs, HeightPolicy policy) {
   std::vector<int> counts(slabs.size(), 1);
   if (policy != HeightPolicy::basic) return counts;
-  for (std::size_t s = 0; s < slabs.size(); ++s) {
-    const auto z_m = [&](Nm z) {
-      return static_cast<float>(static_cast<double>(z - slabs.front().z_bottom_nm) * metres_per_nm);
-    };
-    const float height = z_m(slabs[s].z_top_nm) - z_m(slabs[s].z_bottom_nm);
-    counts[s] = to_count(static_cast<double>(height / static_cast<float>(common_height_m)));
-  }
+  const auto z_m = [&](Nm z) { return static_cast<float>(static_cast<double>(z - slabs.front().z_bottom_nm) * metres_per_nm); };
+  const auto height = [&](const model::Slab& slab) { return z_m(slab.z_top_nm) - z_m(slab.z_bottom_nm); };
+  float thinnest = std::numeric_limits<float>::infinity();
+  for (const model::Slab& slab : slabs)
+    if (slab.kind != model::SlabKind::air) thinnest = std::min(thinnest, height(slab));
+  for (std::size_t s = 0; s < slabs.size(); ++s) counts[s] = to_count(static_cast<double>(height(slabs[s]) / thinnest));
   return counts;
 }
 

@@ -78,7 +78,7 @@ const MeasuredEdge& nearest(std::span<const MeasuredEdge> measured, double edge_
 }  // namespace
 
 TriangleShape triangle_shape(study::TriangleSeed seed, bool smooth) {
-  if (seed == study::TriangleSeed::hex) return {0.765, 0.169, smooth ? 0.975 : 0.96};
+  if (seed == study::TriangleSeed::hex) return {0.765, 0.169, smooth ? 0.99 : 0.96};
   return smooth ? TriangleShape{0.86, 0.198, 0.945} : TriangleShape{};
 }
 

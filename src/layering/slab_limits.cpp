@@ -41,21 +41,22 @@ double slowness(const model::Model& model, const model::Slab& slab) {
 
 std::vector<SlabLimits> slab_limits(const model::Model& model, const study::Study& study) {
   const study::HeightBounds& bounds = study.height_bounds;
+  const std::optional<double> frequency_hz = study::highest_frequency_hz(study);
   std::vector<SlabLimits> limits(model.slabs().size());
   for (std::size_t s = 0; s < limits.size(); ++s) {
     const model::Slab& slab = model.slabs()[s];
-    if (study.frequency_hz)
+    if (frequency_hz)
       limits[s].wavelength_height_m =
-          speed_of_light_m_per_s / *study.frequency_hz / slowness(model, slab) / bounds.elements_per_wavelength;
+          speed_of_light_m_per_s / *frequency_hz / slowness(model, slab) / bounds.elements_per_wavelength;
     if (slab.kind == model::SlabKind::dielectric) limits[s].least_count = bounds.elements_per_dielectric.value_or(1);
   }
-  if (!bounds.skin_depth_layers || !study.frequency_hz) return limits;
-  // Hollow copper holds no field, so it asks for nothing; barrels are upright walls, which heights do not resolve.
+  if (!bounds.skin_depth_layers || !frequency_hz) return limits;
+  // Hollow copper and sheets hold no field, so they ask for nothing; barrels are upright walls, which heights do not resolve.
   for (const model::Body& body : model.bodies()) {
-    if (body.kind != model::BodyKind::copper || body.hollow || body.material < 0) continue;
+    if (body.kind != model::BodyKind::copper || body.hollow || body.sheet || body.material < 0) continue;
     for (std::int32_t s = body.first_slab; s <= body.last_slab; ++s) {
       SlabLimits& limit = limits[static_cast<std::size_t>(s)];
-      const double depth = skin_depth_m(model.materials()[static_cast<std::size_t>(body.material)], *study.frequency_hz,
+      const double depth = skin_depth_m(model.materials()[static_cast<std::size_t>(body.material)], *frequency_hz,
                                         model.slabs()[static_cast<std::size_t>(s)]);
       limit.skin_depth_m = limit.skin_depth_m > 0 ? std::min(limit.skin_depth_m, depth) : depth;
     }

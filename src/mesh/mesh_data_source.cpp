@@ -74,7 +74,8 @@ void MeshDataSource::gather(const std::vector<Block>& blocks) {
     const Block& block = blocks[b];
     const std::optional<ElementKind> kind = element_kind(block);
     if (!kind)
-      throw Error(ErrorCode::file_syntax, "a block has elements with a number of nodes that no kind has", {.file = mesh_.source});
+      throw Error(ErrorCode::file_syntax, "a block has elements with a number of nodes that no kind has",
+                  {.file = mesh_.source});
     for (std::int64_t i = 0; i < block.size();) {
       const std::int32_t tag = block.tags[static_cast<std::size_t>(i)];
       std::int64_t end = i + 1;
@@ -105,9 +106,9 @@ void MeshDataSource::add_groups(int dimension) {
     return tags[static_cast<std::size_t>(r.first)] <= 0;
   };
   for (std::size_t i = run; i < runs_.size(); ++i)
-    names.emplace(runs_[i].tag, untagged_in_block(runs_[i]) ? "untagged"
-                                                            : (dimension == 3 ? "volume " : "surface ") +
-                                                                  std::to_string(runs_[i].tag));
+    names.emplace(runs_[i].tag, untagged_in_block(runs_[i])
+                                    ? "untagged"
+                                    : (dimension == 3 ? "volume " : "surface ") + std::to_string(runs_[i].tag));
   std::vector<std::string> spelt;
   for (const auto& [tag, name] : names) spelt.push_back(name);
   spelt = group_names(spelt);
@@ -125,8 +126,8 @@ void MeshDataSource::add_groups(int dimension) {
         const auto width = static_cast<std::size_t>(corners_of(kind));
         const auto& corners = dimension == 3 ? mesh_.cells[static_cast<std::size_t>(r.block)].corners
                                              : mesh_.faces[static_cast<std::size_t>(r.block)].corners;
-        const auto used = std::span(corners).subspan(static_cast<std::size_t>(r.first) * width,
-                                                     static_cast<std::size_t>(r.count) * width);
+        const auto used =
+            std::span(corners).subspan(static_cast<std::size_t>(r.first) * width, static_cast<std::size_t>(r.count) * width);
         for (const std::int64_t node : used) extend(group.extent, is_empty, mesh_.nodes[static_cast<std::size_t>(node)]);
       }
       blocks_.push_back({kind, index, tag, count});

@@ -228,79 +228,79 @@ void PrismSource::visit_pieces(std::int32_t tag_index, Visit&& visit) {
 
 void PrismSource::visit_wedges(std::int32_t tag_index, Rows& rows) {
   const auto corners = mesh_.planar().triangles();
-  std::vector<std::array<std::int32_t, 3>> part;
+  std::array<std::vector<std::int32_t>, 3> tables;
   visit_pieces(tag_index, [&](std::int32_t slab, std::span<const std::int32_t> few) {
     const std::int32_t begin = mesh_.plan().first_sublayer(slab), end = mesh_.plan().first_sublayer(slab + 1);
-    // Levels strictly inside a slab hold the same vertices: one table serves them all.
-    const std::span<const std::int32_t> bottom = ranks_of(begin), top = ranks_of(end);
-    const std::span<const std::int32_t> inside = end - begin > 1 ? ranks_of(begin + 1) : bottom;
-    part.clear();
-    for (const std::int32_t t : few) part.push_back(corners[index(t)]);
+    // Corners are looked up once per slab; every sub-layer then adds its first ids to them. Levels strictly inside a slab hold
+    // the same vertices, and levels without gaps number their nodes like the plane does.
+    std::span<const std::int32_t> known_ranks, known;
+    const auto look_up = [&](std::int32_t level, std::vector<std::int32_t>& out) {
+      const std::span<const std::int32_t> ranks = ranks_of(level);
+      if (!known.empty() && ranks.empty() && known_ranks.empty()) return known;
+      out.resize(3 * few.size());
+      std::int32_t* to = out.data();
+      for (const std::int32_t t : few)
+        for (const std::int32_t v : corners[index(t)]) *to++ = ranks.empty() ? v : ranks[index(v)];
+      known_ranks = ranks;
+      return known = out;
+    };
+    const std::span<const std::int32_t> bottom = look_up(begin, tables[0]);
+    const std::span<const std::int32_t> inside = end - begin > 1 ? look_up(begin + 1, tables[1]) : bottom;
+    const std::span<const std::int32_t> top = look_up(end, tables[2]);
     for (std::int32_t k = begin; k < end; ++k)
-      visit_sublayer(k, part, k == begin ? bottom : inside, k + 1 == end ? top : inside, rows);
+      visit_sublayer(k, k == begin ? bottom : inside, k + 1 == end ? top : inside, rows);
   });
+}
+
+void PrismSource::visit_sublayer(std::int32_t sublayer, std::span<const std::int32_t> low, std::span<const std::int32_t> high,
+                                 Rows& rows) const {
+  const std::int64_t first_low = mesh_.first_node_of_level(sublayer), first_high = mesh_.first_node_of_level(sublayer + 1);
+  for (std::size_t at = 0; at < low.size();) {
+    const auto out = rows.room((low.size() - at) / 3);
+    std::int64_t* to = out.data();
+    const std::size_t count = out.size() / 6, end = at + 3 * count;
+    for (; at < end; at += 3, to += 6)
+      for (std::size_t i = 0; i < 3; ++i) {
+        to[i] = first_low + low[at + i];
+        to[3 + i] = first_high + high[at + i];
+      }
+    rows.advance(count);
+  }
+}
+
+void PrismSource::survey_shapes() {
+  const PlanarMesh& planar = mesh_.planar();
+  shapes_.reserve(index(planar.num_triangles()));
+  for (std::int32_t t = 0; t < planar.num_triangles(); ++t) {
+    const std::array<double, 3> squared = planar.squared_edges_m2(t);
+    shapes_.push_back({planar.area_m2(t), squared[0] + squared[1] + squared[2]});
+  }
 }
 
 void PrismSource::visit_field(std::size_t block, CellField field, const VisitValues& visit) {
   PCBMESH_ASSERT(has_field(field) && dimension_of(blocks_.at(block).kind) == 3);
   const PlanarMesh& planar = mesh_.planar();
   std::vector<double> values;
-  const auto flush = [&] {
-    for (std::span<const double> rest = values; !rest.empty(); rest = rest.subspan(std::min(chunk, rest.size())))
-      visit(rest.first(std::min(chunk, rest.size())));
-    values.clear();
-  };
-  std::vector<std::array<double, 2>> shapes;  // area and sum of squared edges: the same through all sub-layers
+  if (field == CellField::quality && shapes_.empty()) survey_shapes();
+  std::vector<std::array<double, 2>> shapes;
   visit_pieces(tag_index_of(blocks_[block]), [&](std::int32_t slab, std::span<const std::int32_t> few) {
+    values.resize(few.size());
+    if (field == CellField::region)
+      std::ranges::transform(few, values.begin(), [&](std::int32_t t) { return planar.regions()[index(t)]; });
     shapes.clear();
     if (field == CellField::quality)
-      for (const std::int32_t t : few) {
-        const std::array<double, 3> squared = planar.squared_edges_m2(t);
-        shapes.push_back({planar.area_m2(t), squared[0] + squared[1] + squared[2]});
-      }
+      for (const std::int32_t t : few) shapes.push_back(shapes_[index(t)]);
+    double last_height = -1;
     for (std::int32_t k = mesh_.plan().first_sublayer(slab); k < mesh_.plan().first_sublayer(slab + 1); ++k) {
       const double height = mesh_.plan().height_m(k);
-      for (std::size_t i = 0; i < few.size(); ++i)
-        values.push_back(field == CellField::region     ? planar.regions()[index(few[i])]
-                         : field == CellField::sublayer ? k
-                                                        : quality_(shapes[i][0], shapes[i][1], height));
-      flush();
+      if (field == CellField::sublayer) std::ranges::fill(values, k);
+      if (field == CellField::quality && height != last_height)  // most slabs are cut evenly
+        std::ranges::transform(shapes, values.begin(), [&](const auto& s) { return quality_(s[0], s[1], height); });
+      last_height = height;
+      for (std::span<const double> rest = values; !rest.empty(); rest = rest.subspan(std::min(chunk, rest.size())))
+        visit(rest.first(std::min(chunk, rest.size())));
     }
   });
-}
-
-void PrismSource::visit_sublayer(std::int32_t sublayer, std::span<const std::array<std::int32_t, 3>> triangles,
-                                 std::span<const std::int32_t> low_ranks, std::span<const std::int32_t> high_ranks,
-                                 Rows& rows) const {
-  const auto write = [&](auto low, auto high) {
-    for (auto rest = triangles; !rest.empty();) {
-      const auto out = rows.room(rest.size());
-      const std::size_t count = out.size() / 6;
-      std::int64_t* to = out.data();
-      for (const auto& [a, b, c] : rest.first(count)) {
-        to[0] = low(a), to[1] = low(b), to[2] = low(c);
-        to[3] = high(a), to[4] = high(b), to[5] = high(c);
-        to += 6;
-      }
-      rows.advance(count);
-      rest = rest.subspan(count);
-    }
-  };
-  // Levels without gaps number their nodes like the plane does: no look-up.
-  const auto plain = [&](std::int32_t level) {
-    return [first = mesh_.first_node_of_level(level)](std::int32_t v) { return first + v; };
-  };
-  const auto ranked = [&](std::int32_t level, std::span<const std::int32_t> ranks) {
-    return [first = mesh_.first_node_of_level(level), at = ranks.data()](std::int32_t v) { return first + at[index(v)]; };
-  };
-  if (low_ranks.empty() && high_ranks.empty())
-    write(plain(sublayer), plain(sublayer + 1));
-  else if (low_ranks.empty())
-    write(plain(sublayer), ranked(sublayer + 1, high_ranks));
-  else if (high_ranks.empty())
-    write(ranked(sublayer, low_ranks), plain(sublayer + 1));
-  else
-    write(ranked(sublayer, low_ranks), ranked(sublayer + 1, high_ranks));
 }
 
 std::span<const std::int32_t> PrismSource::ranks_of(std::int32_t level) {

@@ -78,8 +78,14 @@ std::int32_t Model::sheet_at(std::int32_t face, std::span<const std::int32_t> pr
   });
   if (sheet == present.end()) return -1;
   const auto num_slabs = static_cast<std::int32_t>(parts_->slabs.size());
-  for (const std::int32_t slab : {face - 1, face})
-    if (slab >= 0 && slab < num_slabs && top_body(slab, present) >= 0) return -1;
+  const Body& conductor = parts_->bodies[static_cast<std::size_t>(*sheet)];
+  for (const std::int32_t slab : {face - 1, face}) {
+    const std::int32_t top = slab >= 0 && slab < num_slabs ? top_body(slab, present) : -1;
+    if (top < 0) continue;
+    // A film of mask lies on a sheet and leaves it alone; everything else takes its place.
+    const Body& other = parts_->bodies[static_cast<std::size_t>(top)];
+    if (other.kind != BodyKind::filler || other.priority > conductor.priority) return -1;
+  }
   return *sheet;
 }
 

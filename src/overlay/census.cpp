@@ -117,6 +117,11 @@ Census take_census(const EdgeGraph& graph, const Faces& faces, LabelPool& labels
     return bodies[ix(a)].net == bodies[ix(b)].net && conductors.conducts(a) && conductors.conducts(b) &&
            conductors.share_slab(a, b);
   };
+  census.touching = touching_nets(graph, faces, labels, conductors);
+  if (has_fillers(conductors.model())) {
+    census.pieces = count_pieces_by_cells(graph, faces, labels, conductors.model());
+    return census;
+  }
   // One net's bodies join where they overlap, and where they stand side by side.
   for (std::int32_t f = 0; f < num_faces; ++f) {
     const auto state = labels.entries(faces.state[ix(f)]);
@@ -151,7 +156,6 @@ Census take_census(const EdgeGraph& graph, const Faces& faces, LabelPool& labels
       ++element;
     }
   }
-  census.touching = touching_nets(graph, faces, labels, conductors);
   return census;
 }
 

@@ -17,8 +17,8 @@ using NetPair = std::array<std::int32_t, 2>;
 /// What must survive the snapping.
 struct Census {
   std::vector<std::int32_t> components;  ///< per body: parts joined through edges
-  std::vector<std::int32_t> pieces;      ///< per net: parts of copper and barrels, joined where slabs are shared
-  std::vector<NetPair> touching;         ///< nets that overlap or share an edge in some slab; ascending
+  std::vector<std::int32_t> pieces;  ///< per net: parts of copper and barrels, joined where slabs are shared; fillers part them
+  std::vector<NetPair> touching;     ///< nets that overlap or share an edge in some slab; ascending
 };
 
 /// Which bodies conduct, and which of them can meet.
@@ -60,6 +60,15 @@ class BodyParts {
   std::vector<std::int32_t> offsets_;
   UnionFind joined_;
 };
+
+/// Whether copper is taken away somewhere by what is put in its place: then what is left must be counted slab by slab.
+[[nodiscard]] bool has_fillers(const model::Model& model);
+
+/// Per net: connected pieces of what is copper in the end, cell by cell (face x slab).
+/// @param faces  states hold domain and board too.
+/// @cost O(faces x slabs).
+[[nodiscard]] std::vector<std::int32_t> count_pieces_by_cells(const EdgeGraph& graph, const Faces& faces,
+                                                              const LabelPool& labels, const model::Model& model);
 
 /// Area of each body.
 [[nodiscard]] std::vector<double> areas_mm2(const EdgeGraph& graph, const LabelPool& labels, std::size_t num_bodies);

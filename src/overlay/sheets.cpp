@@ -307,11 +307,12 @@ Sheets make_sheets(const model::Model& model, LabelPool& labels, const Conductor
     made.sheets.push_back(std::move(sheet.sheet));
   }
   mark_run_ends(made.sheets);
-  if (sheets_meet(made.sheets, conductors)) {
+  if (has_fillers(model) || sheets_meet(made.sheets, conductors)) {
     progress.at("connections", 0);
     std::vector<const EdgeGraph*> graphs;
     for (const Sheet& sheet : made.sheets) {
-      if (std::ranges::any_of(sheet.bodies, [&](std::int32_t b) { return conductors.conducts(b); }))
+      // What takes copper away counts too, and its place on the board.
+      if (has_fillers(model) || std::ranges::any_of(sheet.bodies, [&](std::int32_t b) { return conductors.conducts(b); }))
         graphs.push_back(&sheet.outlines);
     }
     Noder noder(overlaid(graphs, labels), labels, 0, progress);

@@ -18,6 +18,8 @@ namespace {
 constexpr int most_meshes = 12;
 /// Edges nearer than this give meshes that differ by no more than the order of the input does.
 constexpr double same_edge = 0.004;
+/// A mesh of so many triangles is made without asking; beyond, at most so many times those of the finest so far.
+constexpr double free_triangles = 50'000, most_stride = 8;
 /// A proposal that promises less than this is not tried.
 constexpr double least_gain = 0.01;
 
@@ -101,11 +103,19 @@ class Matching {
       const bool is_known = std::any_of(measured_.begin(), measured_.end(), [&](const layering::MeasuredEdge& m) {
         return std::abs(std::log(m.longest_edge_m / point->longest_edge_m)) < same_edge;
       });
-      if (!is_known) return best_ && !promises_more(*point) ? std::nullopt : std::optional(point->longest_edge_m);
+      if (!is_known) return best_ && !promises_more(*point) ? std::nullopt : std::optional(no_leap_to(*point));
       if (best_) return std::nullopt;
       margin_ += 0.003;  // made, measured, and just short: aim a little higher
     }
     return std::nullopt;
+  }
+  /// Predictions far from every mesh err; a leap to a large one is made in strides.
+  [[nodiscard]] double no_leap_to(const layering::FrontPoint& point) const {
+    const layering::MeasuredEdge& finest = *std::min_element(
+        measured_.begin(), measured_.end(), [](const auto& a, const auto& b) { return a.longest_edge_m < b.longest_edge_m; });
+    const double known = std::max(free_triangles, most_stride * static_cast<double>(finest.heights.num_triangles));
+    if (point.triangles <= known) return point.longest_edge_m;
+    return point.longest_edge_m * std::sqrt(point.triangles / known);
   }
   [[nodiscard]] bool promises_more(const layering::FrontPoint& point) const {
     const MatchStep& best = result_.steps[result_.chosen];

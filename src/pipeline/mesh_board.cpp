@@ -48,10 +48,10 @@ class Stopwatch {
 
 Nm longest_edge_nm(const study::Study& study, const model::Model& model) {
   std::optional<Nm> edge = study.longest_edge;
-  if (study.frequency_hz) {
+  if (const std::optional<double> frequency_hz = study::highest_frequency_hz(study)) {
     double slowest = 1;
     for (const model::Slab& slab : model.slabs()) slowest = std::max(slowest, layering::slowness(model, slab));
-    const double wavelength_m = speed_of_light_m_per_s / *study.frequency_hz / slowest;
+    const double wavelength_m = speed_of_light_m_per_s / *frequency_hz / slowest;
     const double edge_m = wavelength_m / study.height_bounds.elements_per_wavelength;
     const auto bound = static_cast<Nm>(std::max(1.0, std::floor(edge_m / metres_per_nm)));
     edge = std::min(edge.value_or(bound), bound);
@@ -119,6 +119,7 @@ MeshBoardResult mesh_board(const board::Board& board, const study::Study& study,
   layering::HeightStatistics heights = layering::height_statistics(planar.mesh);
   std::vector<int> counts;
   std::optional<MatchResult> match;
+  Forecast expected;
   const std::optional<double> height_m = layering::common_height_m(study.policy, heights, model.slabs());
   std::optional<double> feedback_m;
   if (study.policy == study::HeightPolicy::matched) {
@@ -131,20 +132,27 @@ MeshBoardResult mesh_board(const board::Board& board, const study::Study& study,
     counts = std::move(matched.counts);
     match = std::move(matched.result);
     heights = layering::height_statistics(planar.mesh);
+    expected = forecast(planar.mesh, std::nullopt, std::nullopt, counts, model, study);
+    require_few_unknowns(expected, study);
   } else {
     // The paper's feedback: the common height of the first mesh becomes the longest edge of the second.
     if (height_m) feedback_m = layering::feedback_edge_m(study.policy, *height_m, options.longest_edge_nm * metres_per_nm);
+    expected = forecast(planar.mesh, feedback_m, height_m, {}, model, study);
+    require_few_unknowns(expected, study);
     if (feedback_m) {
-      const double forecast = area_m2(planar.mesh) / (area_over_edge_squared * *feedback_m * *feedback_m);
+      const double triangles = area_m2(planar.mesh) / (area_over_edge_squared * *feedback_m * *feedback_m);
+      // The sub-layers of the final mesh are not known yet; by the common height they are not far off.
+      double sublayers = 0;
+      for (const model::Slab& slab : model.slabs()) sublayers += layering::forecast_sublayers(study, slab, *height_m);
       require_budget(
-          forecast * static_cast<double>(model.slabs().size()), study,
+          triangles * sublayers, study,
           fmt::format("height policy '{}' with edges of {:.4g} um", study::name_of(study.policy), *feedback_m * 1e6));
       options.longest_edge_nm = *feedback_m / metres_per_nm;
       planar = timed("triangulate again",
                      [&] { return triangulate::triangulate(graph.graph, model, options, diagnostics, progress); });
       heights = layering::height_statistics(planar.mesh);
     }
-    counts = study.paper_compat ? layering::paper_counts(model.slabs(), study.policy, height_m.value_or(0))
+    counts = study.paper_compat ? layering::paper_counts(model.slabs(), study.policy)
                                 : layering::sublayer_counts(model.slabs(), study.sublayers, height_m, heights);
   }
 
@@ -156,14 +164,25 @@ MeshBoardResult mesh_board(const board::Board& board, const study::Study& study,
   progress.at("extrude", 0);
   mesh::PrismMesh prisms = timed(
       "extrude", [&] { return extrude::extrude(planar.mesh, layers.plan, model, graph.net_pieces, graph.touching_nets); });
+  if (study.fabrication.max_unknowns) require_few_unknowns(measured(prisms), study);
   progress.at("quality", 0);
   const layering::QualityStatistics quality = timed("quality", [&] { return layering::quality_statistics(prisms); });
 
-  return {std::move(prisms),        std::move(resolved),    graph.statistics,
-          std::move(graph.ledger),  planar.statistics,      heights,
-          height_m.value_or(0),     feedback_m.has_value(), options.longest_edge_nm * metres_per_nm,
-          std::move(layers.layers), std::move(match),       quality,
-          std::move(diagnostics),   std::move(times),       {model.circles().begin(), model.circles().end()}};
+  return {std::move(prisms),
+          std::move(resolved),
+          graph.statistics,
+          std::move(graph.ledger),
+          planar.statistics,
+          heights,
+          height_m.value_or(0),
+          feedback_m.has_value(),
+          options.longest_edge_nm * metres_per_nm,
+          std::move(layers.layers),
+          std::move(match),
+          quality,
+          expected,
+          std::move(diagnostics),
+          std::move(times)};
 }
 
 }  // namespace pcbmesh::pipeline

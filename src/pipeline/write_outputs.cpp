@@ -9,6 +9,7 @@
 #include "formats/tags_json/tags_json.hpp"
 #include "pcbmesh/base/error.hpp"
 #include "pcbmesh/mesh/mesh_data_source.hpp"
+#include "pcbmesh/mesh/prism_source.hpp"
 #include "pcbmesh/pipeline/element_source.hpp"
 
 namespace pcbmesh::pipeline {
@@ -67,14 +68,22 @@ void write_text_file(const std::filesystem::path& file, std::string_view text) {
   sink.commit();
 }
 
+void write_binary_file(const std::filesystem::path& file, std::string_view bytes) {
+  formats::FileSink sink(file);
+  sink.put(bytes);
+  sink.commit();
+}
+
 OutputResult write_outputs(const MeshBoardResult& result, const OutputOptions& options, const Progress& progress) {
   OutputResult out;
   const std::filesystem::path tags = file_beside(options.meshes.front(), ".tags.json"),
                               study = file_beside(options.meshes.front(), ".resolved.json");
   // The contract first: whoever sees the mesh finds its meaning beside it.
+  const auto num_volumes = static_cast<std::int32_t>(result.mesh.volume_tags().size());
   ElementSource elements(result);
   out.second_order = elements.second_order();
-  formats::tags_json::write_tags(result.mesh, tags, options.write.unit, &elements.source());
+  formats::tags_json::write_tags(result.mesh, tags, options.write.unit, options.write.one_number_space ? num_volumes : 0,
+                                 &elements.source());
   write_text_file(study, study::to_json(result.resolved));
   for (const std::filesystem::path& file : options.meshes) {
     formats::write_mesh(elements.source(), file, options.write, options.format, progress);
@@ -84,6 +93,11 @@ OutputResult write_outputs(const MeshBoardResult& result, const OutputOptions& o
   out.files.push_back(study.string());
   if (options.check) out.report = judge(elements.source(), options, tags, progress);
   return out;
+}
+
+mesh::MeshData expand(const mesh::PrismMesh& mesh) {
+  mesh::PrismSource source(mesh);
+  return mesh::expand(source);
 }
 
 }  // namespace pcbmesh::pipeline

@@ -32,6 +32,8 @@ class FaultList {
   return hz > 0 && hz <= highest_hz;
 }
 
+/// Holes, etching, fills, materials, unknowns.
+void check_fabrication(const Fabrication& fabrication, FaultList& faults);
 /// Ports, boundaries, sweep, solver.
 void check_physics(const Study& study, FaultList& faults);
 

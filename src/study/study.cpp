@@ -149,10 +149,10 @@ bool Study::operator==(const Study& other) const {
          policy == other.policy && sublayers == other.sublayers && height_bounds == other.height_bounds &&
          match == other.match && paper_compat == other.paper_compat && tolerance == other.tolerance &&
          arcs.sagitta_nm == other.arcs.sagitta_nm && arcs.mode == other.arcs.mode && unit == other.unit &&
-         split == other.split && order == other.order && wedge_nodes == other.wedge_nodes &&
-         max_prisms == other.max_prisms && conductor_surface == other.conductor_surface && problem == other.problem &&
-         solver == other.solver && ports == other.ports && boundaries == other.boundaries && sweep == other.sweep &&
-         modes == other.modes;
+         split == other.split && order == other.order && wedge_nodes == other.wedge_nodes && max_prisms == other.max_prisms &&
+         conductor_surface == other.conductor_surface && problem == other.problem && solver == other.solver &&
+         ports == other.ports && boundaries == other.boundaries && sweep == other.sweep && modes == other.modes &&
+         fabrication == other.fabrication;
 }
 
 std::optional<double> highest_frequency_hz(const Study& study) {
@@ -172,6 +172,7 @@ std::vector<Fault> faults_of(const Study& study) {
   if (study.max_prisms < 1)
     faults.add("/limits/max_prisms", fmt::format("{} is out of range; expected at least 1", study.max_prisms));
   check_physics(study, faults);
+  check_fabrication(study.fabrication, faults);
   return faults.take();
 }
 

@@ -10,6 +10,7 @@
 #include "formats/syntax/input_file.hpp"
 #include "pcbmesh/base/error.hpp"
 #include "src/study/choices.hpp"
+#include "src/study/fabrication_json.hpp"
 #include "src/study/json_fields.hpp"
 
 namespace pcbmesh::study {
@@ -175,8 +176,9 @@ Json corner(geometry::Point p) {
 Study parse_study(std::string_view json, std::string_view file_name) {
   const JsonDocument document = JsonDocument::parse(json, file_name, ErrorCode::study_invalid);
   const JsonValue root = document.root();
-  root.allow_only({"$schema", "schema_version", "note", "region", "conductors", "air", "mesh", "arcs", "output", "limits",
-                   "problem", "solver", "ports", "boundaries", "sweep", "modes"});
+  root.allow_only({"$schema", "schema_version", "note",       "region", "conductors",  "air",        "mesh",     "arcs",
+                   "output",  "limits",         "problem",    "solver", "ports",       "boundaries", "sweep",    "modes",
+                   "vias",    "backdrill",      "merge_vias", "etch",   "solder_mask", "fill",       "materials"});
   read_version(root);
   if (const auto field = root.find("$schema")) (void)field->as_string();
   if (const auto field = root.find("note")) (void)field->as_string();
@@ -197,10 +199,11 @@ Study parse_study(std::string_view json, std::string_view file_name) {
   }
   if (const auto object = root.find("output")) read_output(*object, study);
   if (const auto object = root.find("limits")) {
-    object->allow_only({"max_prisms"});
+    object->allow_only({"max_prisms", "max_unknowns"});
     if (const auto field = object->find("max_prisms")) study.max_prisms = field->as_integer();
   }
   read_physics(root, study);
+  read_fabrication(root, std::filesystem::path(file_name).parent_path(), study.fabrication);
   try {
     check(study);
   } catch (const Error& error) {
@@ -257,6 +260,7 @@ std::string to_json(const Study& study) {
                         {"wedge_nodes", study.wedge_nodes}};
   root["limits"] = Json{{"max_prisms", study.max_prisms}};
   write_physics(study, root);
+  write_fabrication(study.fabrication, root);
   // A net name may hold any bytes; those that are no UTF-8 are replaced rather than refused.
   return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -70,6 +70,8 @@ def expect_refusal(validator, document, change, what):
 
 board = check_schema("docs/schema/board.schema.json")
 study = check_schema("docs/schema/study.schema.json")
+materials = check_schema("docs/schema/materials.schema.json")
+check_file(materials, pathlib.Path("src/study/materials.json"))
 boards = studies = 0
 for example in sorted((ROOT / "examples").glob("*.json")):
     is_study = example.name.endswith(".study.json")

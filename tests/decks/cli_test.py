@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The program as its user meets it: help, exit codes, messages, files left behind."""
+import json
 import pathlib
 import signal
 import subprocess
@@ -47,6 +48,47 @@ class Cli(unittest.TestCase):
                 report = run_json("mesh", ROOT / f"examples/{example}.json", "--air", "0", "--policy", policy, "--sublayers", "floor", "-o", self.out / "x.msh")
                 self.assertEqual(sum(f["count"] for f in report["check"]["findings"] if f["severity"] == "error"), 0, (example, policy))
                 self.assertEqual(report["counts"]["prisms"], report["counts"]["triangles"] * report["counts"]["sublayers"])
+
+    def test_explain_says_who_forced_which_height(self):
+        bounds = ["--frequency", "20GHz", "--elements-per-wavelength", "20", "--elements-per-dielectric", "6", "--height-growth", "1.6"]
+        done = run("mesh", SERPENTINE, *bounds, "--explain", "-o", self.out / "a.msh", "-o", self.out / "a.vtu")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("passed", done.stdout, "unequal sub-layers are written, read back and judged")
+        for words in ("forced by", "across: at least 6", "wavelength: at most 749.5 um", "growth"):
+            self.assertIn(words, done.stdout)
+        report = json.loads((self.out / "a.report.json").read_text())
+        layers = {layer["layer"]: layer for layer in report["layers"]}
+        self.assertEqual([layers[n]["forced_by"] for n in ("L2", "L4", "air above")], ["across", "across", "growth"])
+        self.assertEqual(sum(layer["prisms"] for layer in layers.values()), report["counts"]["prisms"])
+        self.assertAlmostEqual(sum(layer["prisms"] * layer["quality"] for layer in layers.values()) / report["counts"]["prisms"], report["quality"]["mean_prism"], 3)
+        air = layers["air above"]["sublayer_heights_m"]
+        self.assertAlmostEqual(sum(air), 1e-3, 12)
+        self.assertTrue(all(b <= 1.6000001 * a for a, b in zip(air, air[1:])) and air[-1] > air[0], air)
+        self.assertIsNone(report["match"])
+
+    def test_skin_depth_grades_copper_and_the_mesh_stays_right(self):
+        report = run_json("mesh", SERPENTINE, "--air", "0", "--frequency", "1GHz", "--skin-depth-layers", "2", "-o", self.out / "s.msh")
+        self.assertEqual(sum(f["count"] for f in report["check"]["findings"] if f["severity"] == "error"), 0)
+        copper = next(layer for layer in report["layers"] if layer["layer"] == "L3")
+        self.assertEqual(copper["forced_by"], "skin_depth")
+        self.assertAlmostEqual(copper["skin_depth_m"], 2.09e-6, delta=0.01e-6)
+        self.assertLessEqual(sum(copper["sublayer_heights_m"][:2]), copper["skin_depth_m"] * 1.000001)
+
+    def test_policy_matched_meets_its_goal_and_repeats(self):
+        goal = ["--air", "0", "--seed", "hex", "--smooth", "--policy", "matched", "--target-quality", "0.75"]
+        report = run_json("mesh", SERPENTINE, *goal, "-o", self.out / "a.msh")
+        self.assertGreaterEqual(min(report["quality"]["mean_prism"], report["quality"]["volume_weighted_prism"]), 0.75)
+        match = report["match"]
+        self.assertEqual(match["meshes"][match["chosen"]]["prisms"], report["counts"]["prisms"])
+        self.assertTrue(0 < match["knee"] < len(match["front"]))
+        run_json("mesh", SERPENTINE, "--study", self.out / "a.resolved.json", "-o", self.out / "b.msh")
+        self.assertEqual((self.out / "a.msh").read_bytes(), (self.out / "b.msh").read_bytes())
+        done = run("mesh", SERPENTINE, "--policy", "matched", "--target-quality", "0.9", "--budget-prisms", "300", "--dry-run")
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assertIn("502", done.stderr)
+        done = run("mesh", SERPENTINE, "--target-quality", "0.9", "--dry-run")
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("matched", done.stderr)
 
     def test_usage_errors_are_exit_2_and_say_what_to_do(self):
         for arguments, words in (

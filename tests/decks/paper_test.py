@@ -32,7 +32,9 @@ class Paper(unittest.TestCase):
             measured[example] = m.cases(example)
             m.example_windows(windows, example, measured[example])
         beyond.targets(windows, measured)
-        self.assert_windows(windows, 50)
+        beyond.matched(windows, measured)
+        beyond.compat_reports(windows, measured)
+        self.assert_windows(windows, 80)
 
     def test_evidence_has_every_table(self):
         text = (ROOT / "docs/evidence/paper.md").read_text(encoding="utf-8")

@@ -51,6 +51,25 @@ std::vector<int> sublayers_per_slab(const mesh::LayerPlan& plan) {
   return counts;
 }
 
+TEST(ChooseLayers, PaperCountsTruncateInSinglePrecisionAndLeaveOtherCasesWhole) {
+  const auto slabs = slabs_of({{"L4", 400 * um}, {"L3", 100 * um}, {"L2", 400 * um}, {"L1", 100 * um}});
+  EXPECT_EQ(paper_counts(slabs, HeightPolicy::basic), (std::vector<int>{3, 1, 3, 1}))
+      << "Table 3, case 1: 8 sub-layers, not 10";
+  for (const HeightPolicy policy :
+       {HeightPolicy::average, HeightPolicy::maximum, HeightPolicy::minimum, HeightPolicy::thinnest_layer})
+    EXPECT_EQ(paper_counts(slabs, policy), (std::vector<int>{1, 1, 1, 1}));
+}
+
+TEST(ChooseLayers, WeightedHeightLiesWhereTheParabolasSumIsHighest) {
+  HeightStatistics heights = paper_heights();
+  heights.weighted = 4.4e-4;
+  EXPECT_EQ(common_height_m(HeightPolicy::weighted, heights, serpentine()), 4.4e-4);
+  EXPECT_TRUE(feedback_edge_m(HeightPolicy::weighted, 4.4e-4, 2e-3));
+  EXPECT_FALSE(common_height_m(HeightPolicy::matched, heights, serpentine()));
+  heights.weighted = 0;
+  EXPECT_THROW(std::ignore = common_height_m(HeightPolicy::weighted, heights, serpentine()), Error);
+}
+
 TEST(ChooseLayers, BestMeanIsTheBestOfAllCounts) {
   HeightStatistics heights;
   heights.bins = {{0.5e-4, 900}, {1.0e-4, 2000}, {1.7e-4, 1500}, {4.0e-4, 300}};

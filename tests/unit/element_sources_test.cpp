@@ -73,9 +73,8 @@ TEST(TetrahedralSource, TwinIsConformingWithTheSameVolumes_D1_D2) {
     const auto tag = std::ranges::find(mesh.volume_tags(), twin.blocks()[b].tag, &mesh::VolumeTag::id);
     EXPECT_NEAR(sum, tag->volume_m3, 1e-12 * tag->volume_m3);
     std::int64_t num_values = 0;
-    twin.visit_field(b, mesh::CellField::quality, [&](std::span<const double> values) {
-      num_values += static_cast<std::int64_t>(values.size());
-    });
+    twin.visit_field(b, mesh::CellField::quality,
+                     [&](std::span<const double> values) { num_values += static_cast<std::int64_t>(values.size()); });
     EXPECT_EQ(num_values, twin.blocks()[b].count);
   }
 }
@@ -140,7 +139,8 @@ void expect_middles(mesh::MeshSource& source) {
         const auto& of = middles.at(kind)[m];
         for (const int c : of)
           for (std::size_t k = 0; k < 3; ++k)
-            sum[k] += nodes[static_cast<std::size_t>(rows[r + static_cast<std::size_t>(c)])][k] / static_cast<double>(of.size());
+            sum[k] +=
+                nodes[static_cast<std::size_t>(rows[r + static_cast<std::size_t>(c)])][k] / static_cast<double>(of.size());
         for (std::size_t k = 0; k < 3; ++k)
           EXPECT_NEAR(nodes[static_cast<std::size_t>(rows[r + corners + m])][k], sum[k], 1e-15) << mesh::name_of(kind);
       }
@@ -149,7 +149,7 @@ void expect_middles(mesh::MeshSource& source) {
   EXPECT_EQ(std::ranges::count(uses, 0), 0) << "nodes without an element";
 }
 
-// Q1, with voids: numbers by arithmetic agree with what each element says its middles are.
+// Q1 and Q3, with voids: numbers by arithmetic agree with what each element says its middles are.
 TEST(SecondOrderSource, EveryMiddleIsWhereItsElementSays_Q1_Q3) {
   for (const bool with_voids : {false, true}) {
     const mesh::PrismMesh mesh = mesh::PrismMesh::from_parts(testing::sample_parts(with_voids));
@@ -165,8 +165,9 @@ TEST(SecondOrderSource, EveryMiddleIsWhereItsElementSays_Q1_Q3) {
       for (const std::int64_t size : {1, 7, 64}) {
         std::vector<Point> piecewise(nodes.size());
         for (std::int64_t first = 0; first < source.num_nodes(); first += size)
-          source.fill_nodes(first, std::span(piecewise).subspan(static_cast<std::size_t>(first),
-                                                                static_cast<std::size_t>(std::min(size, source.num_nodes() - first))));
+          source.fill_nodes(first,
+                            std::span(piecewise).subspan(static_cast<std::size_t>(first),
+                                                         static_cast<std::size_t>(std::min(size, source.num_nodes() - first))));
         EXPECT_EQ(piecewise, nodes);
       }
       if (!with_face_nodes) continue;
@@ -183,7 +184,8 @@ mesh::PrismMeshParts disc_parts(int n, double radius) {
   mesh::PlanarMeshParts planar;
   planar.points_m.push_back({0, 0});
   for (int i = 0; i < n; ++i)
-    planar.points_m.push_back({radius * std::cos(2 * std::numbers::pi * i / n), radius * std::sin(2 * std::numbers::pi * i / n)});
+    planar.points_m.push_back(
+        {radius * std::cos(2 * std::numbers::pi * i / n), radius * std::sin(2 * std::numbers::pi * i / n)});
   for (int i = 0; i < n; ++i) {
     planar.triangles.push_back({0, 1 + i, 1 + (i + 1) % n});
     planar.regions.push_back(0);
@@ -203,6 +205,7 @@ mesh::PrismMeshParts disc_parts(int n, double radius) {
   return parts;
 }
 
+// Q2 and the tolerance: what bends and what does not.
 TEST(SecondOrderSource, ChordsBendOntoTheirCircle_Q2) {
   const double radius = 1e-3, sagitta = radius * (1 - std::cos(std::numbers::pi / 16));
   const mesh::PrismMesh mesh = mesh::PrismMesh::from_parts(disc_parts(16, radius));
@@ -228,7 +231,8 @@ TEST(SecondOrderSource, ChordsBendOntoTheirCircle_Q2) {
   EXPECT_EQ(SecondOrderSource(mesh, options).statistics().num_curved_edges, 0);
 }
 
-// A corner that nearly touches the arc of the opposite side would fold the triangle: the chord stays straight, and is counted.
+// Q2: a corner that nearly touches the arc of the opposite side would fold the triangle: the chord stays straight, and is
+// counted.
 TEST(SecondOrderSource, WhatWouldFoldStaysStraight_Q2) {
   const double radius = 1e-3;
   mesh::PrismMeshParts parts = disc_parts(8, radius);
@@ -269,7 +273,7 @@ TEST(MeshDataSource, HandsBackWhatAnySourceHeld) {
     mesh::PrismSource prisms(mesh);
     SecondOrderSource second(mesh, {.with_face_nodes = variant == 3});
     TetrahedralSource twin(prisms);
-    mesh::MeshSource& before = variant == 0 ? static_cast<mesh::MeshSource&>(prisms)
+    mesh::MeshSource& before = variant == 0   ? static_cast<mesh::MeshSource&>(prisms)
                                : variant == 1 ? static_cast<mesh::MeshSource&>(twin)
                                               : second;
     const mesh::MeshData data = mesh::expand(before);

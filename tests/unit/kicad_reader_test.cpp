@@ -139,6 +139,7 @@ TEST(KicadReader, BackdrillsAreUnplatedHoles) {
                          .board;
   ASSERT_EQ(board.drills().size(), 2U);
   EXPECT_FALSE(board.drills()[1].plated);
+  EXPECT_TRUE(board.drills()[1].is_backdrill);
   EXPECT_EQ(board.drills()[1].first_copper, 2);
   EXPECT_EQ(board.drills()[1].figure.pen, 500'000);
 }

@@ -208,6 +208,16 @@ TEST(HeightStatistics, CountsTrianglesBelowAverage) {
   EXPECT_NEAR(heights.maximum, 5.0, 1e-12);
   EXPECT_NEAR(heights.average, (5 + std::sqrt(17.0) + std::sqrt(2.0)) / 3, 1e-12);
   EXPECT_EQ(heights.num_below_average, 1);
+  // sum of q*/h* over sum of q*/h*^2; q* goes with area / (2 h*^2)
+  const double a = 6 / 25.0, b = 2 / 17.0, c = 0.5 / 2.0;
+  EXPECT_NEAR(heights.weighted, (a / 5 + b / std::sqrt(17.0) + c / std::sqrt(2.0)) / (a / 25 + b / 17 + c / 2), 1e-12);
+  double area = 0, count = 0;
+  for (const HeightBin& bin : heights.bins) {
+    area += bin.area_m2;
+    count += bin.count;
+  }
+  EXPECT_NEAR(area, 8.5, 1e-12);
+  EXPECT_EQ(count, 3);
 }
 
 /// Prism mesh of one region per row of squares, void where asked; the boundary is left to a single tag.

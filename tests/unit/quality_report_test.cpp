@@ -134,8 +134,9 @@ TEST(QualityReport, WorstPrismsAreTheWorstAndTheirPlacesAreRight) {
   ASSERT_EQ(report.worst.size(), 5U);
   std::vector<std::tuple<double, std::int32_t, std::int32_t>> all;
   const auto& planar = mesh.planar();
-  for (std::int32_t slab = 0; slab < mesh.plan().num_slabs(); ++slab) {
-    const double height = mesh.plan().height_m(mesh.plan().first_sublayer(slab));
+  for (std::int32_t k = 0; k < mesh.plan().num_sublayers(); ++k) {
+    const std::int32_t slab = mesh.plan().slab_of_sublayer()[static_cast<std::size_t>(k)];
+    const double height = mesh.plan().height_m(k);  // in this sample no two sub-layers of a slab are equal
     for (std::int32_t t = 0; t < planar.num_triangles(); ++t) {
       const auto squared = planar.squared_edges_m2(t);
       if (mesh.tag_of(slab, t) >= 0)
@@ -150,7 +151,8 @@ TEST(QualityReport, WorstPrismsAreTheWorstAndTheirPlacesAreRight) {
     double x = 0;
     for (const std::int32_t c : corners) x += planar.points_m()[static_cast<std::size_t>(c)][0] / 3;
     EXPECT_NEAR(worst.at_m[0], x, 1e-15);
-    EXPECT_GE(worst.num_sublayers, 1);
+    EXPECT_EQ(worst.num_sublayers, 1);
+    EXPECT_GT(worst.z_m, 0);
     EXPECT_FALSE(worst.group.empty());
   }
   EXPECT_TRUE(quality_report(mesh, 0).worst.empty());

@@ -133,7 +133,8 @@ TEST(RoundTrip, GivesBackEveryNumber) {
   const mesh::PrismMesh mesh = sample();
   for (const MeshFormat* format : mesh_formats()) {
     if (format->read == nullptr || format->write == nullptr || format->scope.readable == 0) continue;
-    if (format->name == "abaqus") continue;  // 20 characters a coordinate, faces as sides: below
+    // Abaqus has 20 characters a coordinate and faces as sides: below. The VTK and HDF5 family has tests of its own.
+    if (format->name != "msh" && format->name != "mfem") continue;
     for (const int variant : {0, 1, 2, 3, 4}) {
       mesh::PrismSource prisms(mesh);
       extrude::SecondOrderSource second(mesh, {.with_face_nodes = variant != 2});
@@ -223,8 +224,9 @@ TEST(Abaqus, SaysWhatIsWrongAndWhere) {
     EXPECT_GT(error.spot().line, 0) << error.what();
   }
   // A hand-made file: letters behind the type, an element over two lines, sets with and without numbers.
-  create(folder / "b.inp", nodes + "5, 1, 1, 1\n** comment\n*ELEMENT, TYPE=C3D4H, ELSET=copper\n7, 1, 2,\n3, 4\n"
-                           "*element, type=c3d4, elset=V9_air\n9, 2, 3, 4, 5\n*SURFACE, NAME=port, TYPE=ELEMENT\n7, S1\n");
+  create(folder / "b.inp", nodes +
+                               "5, 1, 1, 1\n** comment\n*ELEMENT, TYPE=C3D4H, ELSET=copper\n7, 1, 2,\n3, 4\n"
+                               "*element, type=c3d4, elset=V9_air\n9, 2, 3, 4, 5\n*SURFACE, NAME=port, TYPE=ELEMENT\n7, S1\n");
   const mesh::MeshData mesh = read_mesh(folder / "b.inp");
   EXPECT_EQ(mesh.cells.at(0).tags, (std::vector<std::int32_t>{1, 9}));
   EXPECT_EQ(mesh.faces.at(0).corners, (std::vector<std::int64_t>{0, 2, 1}));

@@ -34,6 +34,7 @@ void check_boundary_overlaps(const Context& context, const FaceMatch& match, Rep
 void check_volumes(const Context& context, const FaceMatch& match, const VolumeSums& sums, Report& report);
 void check_tags(const Context& context, const std::vector<std::int64_t>& cells_of_tag, Report& report);
 void check_face_groups(const Context& context, Report& report);
-void check_nets(const Context& context, const NetContacts& nets, Report& report);
+/// Mesh against layout: pieces, shorts, and what each net is (Report::nets). `netlist` null: the expectation's own.
+void check_nets(const Context& context, NetContacts& nets, const Expectation* netlist, Report& report);
 
 }  // namespace pcbmesh::validation::checks

@@ -232,11 +232,18 @@ void CheckLog::found(std::string_view code, FindingSeverity severity, std::strin
   run_.num_found += count;
   Given& given = given_.try_emplace(std::string(code)).first->second;
   given.severity = severity;
-  if (++given.findings > max_findings_of_a_code) {
+  is_last_kept_ = ++given.findings <= max_findings_of_a_code;
+  if (!is_last_kept_) {
     given.count_beyond += count;
     return;
   }
   report_.findings.push_back({std::string(code), severity, std::move(text), count, std::move(places)});
+}
+
+void CheckLog::describe_last(std::vector<std::string> nets, std::string layer) {
+  if (!is_last_kept_) return;
+  report_.findings.back().nets = std::move(nets);
+  report_.findings.back().layer = std::move(layer);
 }
 
 }  // namespace pcbmesh::validation::checks

@@ -100,8 +100,11 @@ class CheckLog {
   void found(std::string_view code, FindingSeverity severity, std::string text, const Tally& tally, PlaceKind kind);
   void found(std::string_view code, FindingSeverity severity, std::string text, std::int64_t count = 1,
              std::vector<Finding::Place> places = {});
+  /// Says which nets and which layer the finding just made is about.
+  void describe_last(std::vector<std::string> nets, std::string layer);
 
  private:
+  bool is_last_kept_ = false;
   Report& report_;
   const Context& context_;
   CheckRun run_;

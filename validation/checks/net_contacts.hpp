@@ -31,6 +31,10 @@ class NetContacts {
     }
   }
   [[nodiscard]] const std::vector<std::string>& nets() const { return nets_; }
+  /// Index into nets() of a copper cell, -1 for others.
+  [[nodiscard]] std::int32_t net_of(std::int64_t cell) const { return net_of_cell(cell); }
+  /// First cell of the piece that a copper cell belongs to.
+  [[nodiscard]] std::int64_t piece_of(std::int64_t cell) { return root(cell); }
   /// First cell of each connected piece, per net, ascending.
   [[nodiscard]] std::vector<std::vector<std::int64_t>> pieces() const;
   /// Shared faces per pair of nets (indices into nets()).

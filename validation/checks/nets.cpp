@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <set>
 
@@ -75,73 +73,6 @@ std::map<std::pair<std::int32_t, std::int32_t>, Tally> NetContacts::touches() co
     for (const auto& [pair, tally] : mine) all[pair].merge(tally);
   }
   return all;
-}
-
-namespace {
-
-void check_pieces(const Context& context, const NetContacts& nets, CheckLog& log) {
-  const auto pieces = nets.pieces();
-  for (const auto& expected : context.expectation->nets) {
-    if (expected.pieces < 0) continue;
-    const auto place = std::lower_bound(nets.nets().begin(), nets.nets().end(), expected.name);
-    if (place == nets.nets().end() || *place != expected.name) continue;  // hollow: no copper cells to count
-    const auto& found = pieces[static_cast<std::size_t>(place - nets.nets().begin())];
-    const auto num_found = static_cast<std::int64_t>(found.size());
-    if (num_found == expected.pieces) continue;
-    std::vector<Finding::Place> places;
-    for (std::size_t i = 0; i < found.size() && i < Tally::max_kept; ++i) places.push_back(context.place_of_cell(found[i]));
-    if (num_found > expected.pieces) {
-      log.found(
-          "net.open", FindingSeverity::error,
-          fmt::format("net {} is open: {} pieces of copper in the mesh, {} in the layout (places: one cell of each piece)",
-                      expected.name, num_found, expected.pieces),
-          num_found - expected.pieces, std::move(places));
-    } else {
-      log.found("net.merged", FindingSeverity::error,
-                fmt::format("pieces of net {} have grown together: {} in the mesh, {} in the layout", expected.name, num_found,
-                            expected.pieces),
-                expected.pieces - num_found, std::move(places));
-    }
-  }
-}
-
-void check_shorts(const Context& context, const NetContacts& nets, CheckLog& log) {
-  std::set<std::array<std::string, 2>> allowed;
-  for (auto pair : context.expectation->touching_nets) {
-    if (pair[1] < pair[0]) std::swap(pair[0], pair[1]);
-    allowed.insert(pair);
-  }
-  const auto layer_of = [&](std::int64_t cell) {
-    const std::int32_t tag = context.tag_of_cell(cell);
-    for (const auto& volume : context.expectation->volumes) {
-      if (volume.tag == tag) return volume.layer;
-    }
-    return std::string();
-  };
-  for (const auto& [pair, tally] : nets.touches()) {
-    const std::string& a = nets.nets()[static_cast<std::size_t>(pair.first)];
-    const std::string& b = nets.nets()[static_cast<std::size_t>(pair.second)];
-    if (allowed.contains({a, b})) continue;  // names ascend with their indices
-    std::vector<Finding::Place> places;
-    for (const std::int64_t half_face : tally.kept()) places.push_back(context.place_of_half_face(half_face));
-    const std::string layer = layer_of(tally.kept().front() >> 3);
-    const Vector3 at = places.front().at;
-    log.found("net.short", FindingSeverity::error,
-              fmt::format("copper of nets {} and {} shares {} faces, first on layer {} at ({:.9g}, {:.9g}, {:.9g})", a, b,
-                          tally.count(), layer.empty() ? "?" : layer, at[0], at[1], at[2]),
-              tally.count(), std::move(places));
-  }
-}
-
-}  // namespace
-
-void check_nets(const Context& context, const NetContacts& nets, Report& report) {
-  if (context.expectation == nullptr) return;
-  CheckLog log(report, context, "nets");
-  log.examined(static_cast<std::int64_t>(nets.nets().size()));
-  if (!nets.is_needed()) return;
-  check_pieces(context, nets, log);
-  check_shorts(context, nets, log);
 }
 
 }  // namespace pcbmesh::validation::checks

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "pcbmesh/base/dispersion.hpp"
 #include "pcbmesh/base/units.hpp"
 #include "pcbmesh/geometry/path.hpp"
 
@@ -23,6 +24,11 @@ struct Material {
   double tan_delta = 0.0;
   double mu_r = 1.0;
   double sigma_s_per_m = 0.0;
+  Dispersion dispersion{};  ///< not constant: eps_r and tan_delta are its values at `at_hz`
+  double at_hz = 0;         ///< frequency of eps_r and tan_delta; 0 = not stated
+  Roughness roughness{};    ///< of its surface, for conductors
+  bool is_assumed = false;  ///< the board does not state eps_r; a usual value was taken
+  std::string source{};     ///< where the numbers come from, if from a library
   bool operator==(const Material&) const = default;
 };
 
@@ -60,6 +66,7 @@ struct Drill {
   std::int32_t net = no_net;
   ShapeKind kind = ShapeKind::via;  ///< via or pad
   std::int64_t line = 0;
+  bool is_backdrill = false;  ///< drilled after plating, from one end of the span: takes barrel and rings away; not plated
   bool operator==(const Drill&) const = default;
 };
 

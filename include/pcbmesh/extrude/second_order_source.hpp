@@ -22,10 +22,10 @@ struct Circle {
 };
 
 struct SecondOrderOptions {
-  bool with_face_nodes = true;     ///< wedges of 18 nodes and quadrangles of 9, else 15 and 8
-  std::vector<Circle> circles{};   ///< arcs of the layout; empty = everything stays straight
-  double longest_sagitta_m = 0;    ///< chords that are farther from their arc are no chords of it
-  bool for_tetrahedra = false;     ///< the wedges will be split: check the pieces as well
+  bool with_face_nodes = true;    ///< wedges of 18 nodes and quadrangles of 9, else 15 and 8
+  std::vector<Circle> circles{};  ///< arcs of the layout; empty = everything stays straight
+  double longest_sagitta_m = 0;   ///< chords that are farther from their arc are no chords of it
+  bool for_tetrahedra = false;    ///< the wedges will be split: check the pieces as well
 };
 
 /// What became of the arcs.
@@ -37,8 +37,8 @@ struct SecondOrderStatistics {
 
 class RankedSet;
 
-/// The prisms of an implicit mesh with nodes of second order. Corners keep their ids; behind them come the middles of horizontal
-/// edges level by level, then of vertical edges sub-layer by sub-layer, then of quadrangles. All by arithmetic.
+/// The prisms of an implicit mesh with nodes of second order. Corners keep their ids; behind them come the middles of
+/// horizontal edges level by level, then of vertical edges sub-layer by sub-layer, then of quadrangles. All by arithmetic.
 ///
 /// A constrained edge of the plane is curved if both its ends lie on one circle of the layout: within 2 nm plus a tenth of the
 /// edge's own sagitta, which is at most twice `longest_sagitta_m`. Its middle then lies on that circle. A curved edge is curved
@@ -46,7 +46,8 @@ class RankedSet;
 ///
 /// @guarantee Q1  corners, tags, names and the order of elements are those of PrismSource
 /// @guarantee Q2  the Jacobian of every wedge is positive everywhere, by its Bezier coefficients, and at least a tenth of the
-/// straight one; edges that would break this stay straight and are counted. `for_tetrahedra`: also of the pieces, at their nodes
+/// straight one; edges that would break this stay straight and are counted. `for_tetrahedra`: also of the pieces, at their
+/// nodes
 /// @guarantee Q3  the domain keeps its volume if its outline has no arcs
 /// @cost memory O(planar mesh + distinct slab masks x planar mesh / 8 bytes); no table of prisms.
 class SecondOrderSource final : public mesh::MeshSource {

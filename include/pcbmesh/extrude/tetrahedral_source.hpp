@@ -18,8 +18,8 @@ namespace pcbmesh::extrude {
 /// Source: Dompierre et al., "How to subdivide pyramids, prisms and hexahedra into tetrahedra", 1999.
 ///
 /// @guarantee D1  conforming if the source is; same nodes, same tags, same names, same volumes
-/// @guarantee D2  tetrahedra of a wedge with positive Jacobian have positive Jacobians, a third of its volume if its quadrangles
-/// are parallelograms
+/// @guarantee D2  tetrahedra of a wedge with positive Jacobian have positive Jacobians, a third of its volume if its
+/// quadrangles are parallelograms
 /// @cost streamed: O(1) memory beyond the source.
 class TetrahedralSource final : public mesh::MeshSource {
  public:

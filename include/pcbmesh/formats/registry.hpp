@@ -35,11 +35,26 @@ struct BoardFormat {
   ReadBoardResult (*read)(const std::filesystem::path& file, const Progress& progress);
 };
 
+enum class Compression { none, zlib, lz4 };
+/// Order of a wedge's corners in VTU and VTKHDF files. VTK up to 9.6, Gmsh, meshio and MFEM take `legacy`: the normal of the
+/// first triangle points outwards. VTK from 9.7 on documents `parametric`, which is Gmsh's order.
+enum class VtkWedge { legacy, parametric };
+[[nodiscard]] std::string_view name_of(VtkWedge order);
+
+/// What the formats may be told; each takes what it knows and leaves the rest.
 struct WriteMeshOptions {
   bool binary = true;
   LengthUnit unit = LengthUnit::metre;
-  std::string version;        ///< MSH version, "4.1" or "2.2"; empty = 4.1
-  std::string mfem_version{};  ///< "1.3" (named sets) or "1.0"; empty = 1.3
+  std::string version;                          ///< format version, e.g. "4.1"; empty = the format's default
+  Compression compression = Compression::none;  ///< VTK and HDF5 family; HDF5 knows zlib alone
+  bool base64 = false;                          ///< VTK XML: arrays as base64 text, which makes the file valid XML
+  VtkWedge vtk_wedge = VtkWedge::legacy;
+  bool faces = false;             ///< VTU and PVTU: tagged faces as cells too
+  int num_parts = 2;              ///< PVTU: pieces, at least 1
+  int index_bits = 0;             ///< VTK and HDF5 family: 32 or 64; 0 = 32 where they suffice
+  int num_threads = 1;            ///< for compression; the bytes are the same for any number
+  bool one_number_space = false;  ///< face groups are numbered after the volume groups (GetDP knows one kind of number)
+  std::string mfem_version{};     ///< "1.3" (named sets) or "1.0"; empty = 1.3
 };
 
 /// Element kinds as a set of bits.
@@ -52,9 +67,11 @@ template <class... Kinds>
   return ((set >> static_cast<int>(kind)) & 1U) != 0;
 }
 
+inline constexpr KindSet all_kinds = (KindSet{1} << (static_cast<int>(mesh::ElementKind::wedge18) + 1)) - 1;
+
 /// What a mesh format can hold of a mesh, as its reader and writer do it here.
 struct FormatScope {
-  KindSet written = 0;     ///< 0 = not stated
+  KindSet written = 0;  ///< 0 = not stated
   KindSet readable = 0;
   bool has_tags = false;   ///< numbers of volume and face groups survive
   bool has_names = false;  ///< so do their names

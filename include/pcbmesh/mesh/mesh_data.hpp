@@ -26,7 +26,7 @@ struct CellBlock {
   std::vector<std::int64_t> corners;  ///< node indices (0-based), corners_of(kind) per cell
   std::vector<std::int32_t> tags;     ///< volume tag per cell (the file's positive id; 0 = none)
   std::int32_t num_mid = 0;           ///< nodes of second order per cell; 0 = first order
-  std::vector<std::int64_t> mids{};     ///< their indices, num_mid per cell, in Gmsh order (see ElementKind)
+  std::vector<std::int64_t> mids{};   ///< their indices, num_mid per cell, in Gmsh order (see ElementKind)
   [[nodiscard]] std::int64_t size() const { return static_cast<std::int64_t>(tags.size()); }
 };
 

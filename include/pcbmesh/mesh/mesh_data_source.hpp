@@ -17,8 +17,8 @@ namespace pcbmesh::mesh {
 [[nodiscard]] std::optional<ElementKind> element_kind(const FaceBlock& block);
 
 /// A mesh that was read from a file, as writers see it. Any kinds, mixed. Cells without a tag become a group of their own,
-/// "untagged", whose tag is one above the greatest: no writer may lose a cell. Groups have the names of the file, else "volume 7"
-/// or "surface 7"; layers, materials and nets are not known, nor which face groups lie inside.
+/// "untagged", whose tag is one above the greatest: no writer may lose a cell. Groups have the names of the file, else "volume
+/// 7" or "surface 7"; layers, materials and nets are not known, nor which face groups lie inside.
 ///
 /// @cost memory 24 bytes per run of equal tags; the mesh is referred to, not copied, and must outlive the source.
 class MeshDataSource final : public MeshSource {
@@ -46,8 +46,8 @@ class MeshDataSource final : public MeshSource {
   void add_groups(int dimension);
 
   const MeshData& mesh_;
-  std::vector<Run> runs_;                ///< sorted by (tag, kind), then as in the mesh
-  std::vector<std::size_t> first_run_;   ///< per block of the source, plus one
+  std::vector<Run> runs_;               ///< sorted by (tag, kind), then as in the mesh
+  std::vector<std::size_t> first_run_;  ///< per block of the source, plus one
   std::int64_t num_untagged_cells_ = 0;
 };
 

@@ -18,7 +18,7 @@ using PrismQuality = std::function<double(double area_m2, double beta_m2, double
 /// all its sub-layers at a time.
 ///
 /// @cost memory O(regions x slabs) + triangle lists of slabs: at most `cache_bytes`, but always room for two; with voids
-/// also 12 bytes per vertex of the plane.
+/// also 12 bytes per vertex of the plane; once the quality is asked for 16 bytes per triangle.
 class PrismSource final : public MeshSource {
  public:
   /// @param quality  null: no field `quality`.
@@ -44,6 +44,7 @@ class PrismSource final : public MeshSource {
   class Rows;
   void survey_volumes();
   void survey_faces();
+  void survey_shapes();
   /// Index into face_tags or volume_tags of a block.
   [[nodiscard]] std::int32_t tag_index_of(const ElementBlock& block) const;
   void visit_caps(std::int32_t tag_index, Rows& rows) const;
@@ -52,8 +53,9 @@ class PrismSource final : public MeshSource {
   /// Calls visit(sub-layer, triangles) for a few triangles through all sub-layers, then the next few: the order of all prisms.
   template <class Visit>
   void visit_pieces(std::int32_t tag_index, Visit&& visit);
-  void visit_sublayer(std::int32_t sublayer, std::span<const std::array<std::int32_t, 3>> triangles,
-                      std::span<const std::int32_t> low_ranks, std::span<const std::int32_t> high_ranks, Rows& rows) const;
+  /// Prisms over triangles whose corners, as ranks in the levels below and above, stand in `low` and `high`, three each.
+  void visit_sublayer(std::int32_t sublayer, std::span<const std::int32_t> low, std::span<const std::int32_t> high,
+                      Rows& rows) const;
   /// Node ids of a level by vertex, minus the level's first id; empty if they are the vertices themselves.
   [[nodiscard]] std::span<const std::int32_t> ranks_of(std::int32_t level);
   [[nodiscard]] std::span<const std::int32_t> triangles_of(std::int32_t slab, std::int32_t tag_index);
@@ -62,7 +64,8 @@ class PrismSource final : public MeshSource {
   PrismQuality quality_;
   std::vector<std::vector<std::int32_t>> slabs_of_tag_;
   std::vector<SlabGroups> cache_;
-  std::array<LevelRanks, 3> level_ranks_;  ///< bottom, inside and top of the slab that is being written
+  std::array<LevelRanks, 3> level_ranks_;      ///< bottom, inside and top of the slab that is being written
+  std::vector<std::array<double, 2>> shapes_;  ///< area and sum of squared edges by triangle, once the quality is asked for
   std::size_t max_cached_ = 2;
   std::uint64_t clock_ = 0;
 };

@@ -32,7 +32,8 @@ enum class BodyKind {
   board,   ///< body 1: inside of the board outline, cut-outs excluded
   copper,  ///< tracks, pads, fills of one net on one copper slab
   hole,    ///< unplated hole: material of the body (air), or void if material is -1
-  barrel,  ///< plated hole: filled with copper of its net
+  barrel,  ///< plated hole: copper of its net
+  filler,  ///< air or dielectric that takes a place of its own: inside of a tube, backdrilled hole, mask over copper
   port     ///< footprint of a port: fills nothing, its edges are kept straight
 };
 
@@ -109,9 +110,9 @@ struct ModelParts {
   std::vector<Slab> slabs;
   std::vector<Body> bodies;  ///< [0] domain, [1] board
   std::vector<BodyShape> shapes;
-  std::vector<std::int32_t> nets_of_interest;  ///< nets named by the study; empty = all
-  Nm narrowest_feature_nm = 0;                 ///< smallest pen, hole or pad width of the copper in the domain; 0 = unknown
-  Nm narrowest_of_interest_nm = 0;             ///< the same for nets_of_interest
+  std::vector<std::int32_t> nets_of_interest;      ///< nets named by the study; empty = all
+  Nm narrowest_feature_nm = 0;                     ///< smallest pen, hole or pad width of the copper in the domain; 0 = unknown
+  Nm narrowest_of_interest_nm = 0;                 ///< the same for nets_of_interest
   std::vector<geometry::OutlineCircle> circles{};  ///< that outlines may follow, ascending; only if the study asks for order 2
   std::vector<Port> ports;
   std::array<SideCondition, num_sides> sides{};

@@ -13,6 +13,7 @@
 #include "pcbmesh/layering/prism_quality.hpp"
 #include "pcbmesh/mesh/prism_mesh.hpp"
 #include "pcbmesh/overlay/overlay.hpp"
+#include "pcbmesh/pipeline/forecast.hpp"
 #include "pcbmesh/pipeline/match_quality.hpp"
 #include "pcbmesh/study/study.hpp"
 #include "pcbmesh/triangulate/triangulate.hpp"
@@ -38,13 +39,14 @@ struct MeshBoardResult {
   std::vector<layering::LayerChoice> layers;  ///< per slab: how it is cut, and why
   std::optional<MatchResult> match;           ///< policy matched
   layering::QualityStatistics quality;
+  Forecast forecast;  ///< made before the last triangulation
   Diagnostics diagnostics;
   std::vector<StepTime> times;
   std::vector<geometry::OutlineCircle> circles{};  ///< that outlines may follow; only for elements of second order
 };
 
 /// The whole way from board to mesh: compose, overlay, triangulate, choose layers (with the paper's feedback), extrude.
-/// @throws Error from any step; prism_limit (601) when the forecast exceeds study.max_prisms, before anything large is built.
+/// @throws Error from any step; prism_limit (601) when a forecast exceeds a limit of the study, before anything large is built.
 [[nodiscard]] MeshBoardResult mesh_board(const board::Board& board, const study::Study& study,
                                          const Progress& progress = Progress{});
 

@@ -44,5 +44,14 @@ void require_writable(const OutputOptions& options, const std::filesystem::path&
 
 /// Writes a small text file, whole or not at all. @throws Error write_failed (701).
 void write_text_file(const std::filesystem::path& file, std::string_view text);
+/// The same, byte for byte: write_text_file ends a last line that has no end.
+void write_binary_file(const std::filesystem::path& file, std::string_view bytes);
+
+/// The prisms and tagged faces written out: O(prisms) memory. For judging and converting, not for writing.
+[[nodiscard]] mesh::MeshData expand(const mesh::PrismMesh& mesh);
+
+/// Adds to findings about nets which feature of the board file lies nearest to the fault, for each net concerned.
+/// @param unit_m  metres per unit of the places in the report.
+void name_features(const board::Board& board, double unit_m, validation::Report& report);
 
 }  // namespace pcbmesh::pipeline

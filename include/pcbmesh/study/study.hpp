@@ -11,6 +11,7 @@
 
 #include "pcbmesh/base/units.hpp"
 #include "pcbmesh/geometry/path.hpp"
+#include "pcbmesh/study/fabrication.hpp"
 #include "pcbmesh/study/physics.hpp"
 
 namespace pcbmesh::study {
@@ -112,7 +113,7 @@ struct Study {
   Nm air_below = 1 * nm_per_mm;
   Nm air_around = 0;  ///< beside the board's bounding box (whole board only)
 
-  std::optional<double> frequency_hz;          ///< bounds the longest edge by a third of the local wavelength
+  std::optional<double> frequency_hz;          ///< bounds edges and heights by the local wavelength
   std::optional<Nm> longest_edge;              ///< empty = from the frequency, else 2 mm as in the paper
   double min_angle_deg = 20.7;                 ///< in (0, 28.6]
   std::optional<Nm> edge_at_copper;            ///< graded size: edge length at copper outlines
@@ -138,6 +139,7 @@ struct Study {
   std::array<Boundary, num_hull_sides> boundaries{};  ///< by HullSide
   std::optional<Sweep> sweep;
   Modes modes;
+  Fabrication fabrication;  ///< the board as it is really made
 
   bool operator==(const Study&) const;
 };

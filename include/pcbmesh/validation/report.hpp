@@ -27,7 +27,9 @@ struct Finding {
     std::int64_t face = -1;      ///< index over all tagged face blocks in order, -1 = none
     std::int64_t node = -1;      ///< node index, -1 = none
   };
-  std::vector<Place> places;  ///< at most 8
+  std::vector<Place> places;        ///< at most 8
+  std::vector<std::string> nets{};  ///< findings about nets: which
+  std::string layer{};              ///< findings about nets: where the fault is, may be empty
 };
 
 /// One check and what it looked at.
@@ -45,11 +47,22 @@ struct GroupVolume {
   double volume = 0;  ///< cubed unit of the file
 };
 
+/// One net as the mesh has it: mesh against layout.
+struct NetVerdict {
+  std::string name;
+  std::int32_t expected_pieces = -1;  ///< by the layout; < 0 = not known
+  std::int32_t pieces = 0;            ///< of copper cells, skins of hollow copper and sheets together
+  std::int64_t num_cells = 0;
+  double volume = 0;                 ///< of its copper cells, cubed unit of the file
+  std::vector<std::string> ports{};  ///< names of the port groups that share an edge with it
+};
+
 /// Verdict on one mesh. Never throws for a bad mesh: a bad mesh is an answer.
 struct Report {
   std::vector<CheckRun> checks;
   std::vector<Finding> findings;
   std::vector<GroupVolume> volumes;
+  std::vector<NetVerdict> nets;  ///< nets with copper in the mesh, by name; empty without tags.json
   std::int64_t num_nodes = 0, num_cells = 0, num_faces = 0;
   /// No finding of severity error.
   [[nodiscard]] bool passed() const;
@@ -87,6 +100,8 @@ struct Expectation {
 
 struct CheckOptions {
   int num_threads = 1;
+  /// Judges connections by the nets and contacts of this one instead: the tags.json of another mesh of the same layout.
+  const Expectation* netlist = nullptr;
 };
 
 /// Runs every check. Shares no code with the generator. The same mesh gives the same report (but for cpu_s), whatever the

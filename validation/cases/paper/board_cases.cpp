@@ -39,30 +39,8 @@ study::Study study_of_paper() {
   study.air_above = study.air_below = 0;
   study.tolerance = 100;
   study.longest_edge = 2 * nm_per_mm;
+  study.paper_compat = true;
   return study;
-}
-
-/// The paper projects the outline of every feature, those inside other copper too; the product unites the copper of a net
-/// first. So here every shape becomes a body of its own.
-model::Model with_every_outline(const model::Model& model) {
-  model::ModelParts parts;
-  parts.source = model.source();
-  parts.materials.assign(model.materials().begin(), model.materials().end());
-  parts.nets.assign(model.nets().begin(), model.nets().end());
-  parts.slabs.assign(model.slabs().begin(), model.slabs().end());
-  parts.bodies.assign(model.bodies().begin(), model.bodies().end());
-  std::vector<bool> is_taken(parts.bodies.size(), false);
-  for (model::BodyShape shape : model.shapes()) {
-    const auto body = static_cast<std::size_t>(shape.body);
-    if (is_taken[body]) {
-      shape.body = static_cast<std::int32_t>(parts.bodies.size());
-      parts.bodies.push_back(model.bodies()[body]);
-    } else {
-      is_taken[body] = true;
-    }
-    parts.shapes.push_back(std::move(shape));
-  }
-  return model::Model::from_parts(std::move(parts));
 }
 
 /// Sums over prisms of equal base: one per triangle and sub-layer height.
@@ -180,7 +158,7 @@ Example read_example(const std::filesystem::path& board_file) {
   const board::Board board = formats::read_board(board_file).board;
   overlay::OverlayOptions options;
   options.tolerance_nm = study.tolerance;
-  model::Model model = with_every_outline(compose::compose(board, study, diagnostics));
+  model::Model model = compose::compose(board, study, diagnostics);
   overlay::OverlayResult graph = overlay::overlay(model, options, diagnostics);
   return {std::move(model), std::move(graph)};
 }

@@ -52,6 +52,16 @@ def compat(example, measured):
     return table(("case", "longest edge, mm", "triangles", "q_t", "prisms", "q_p", "our q_p by volume"), rows) + "\nEach cell: paper / ours (difference).\n"
 
 
+def compat_flag(example, measured, reports):
+    """The five cases by `pcbmesh mesh --paper-compat` itself, beside the print."""
+    rows = []
+    for row, report, (triangles, _, prisms, q_p) in zip(measured["cases"], reports, m.PRINTED[example]["cases"]):
+        counts, quality = report["counts"], report["quality"]
+        rows.append((CASE_NAMES[row["case"]], f"{triangles:,} / {counts['triangles']:,}", ", ".join(str(layer["sublayers"]) for layer in reversed(report["layers"])),
+                     f"{prisms:,} / {counts['prisms']:,}", f"{q_p:.4f} / {quality['mean_prism']:.4f}", f"{quality['volume_weighted_prism']:.4f}"))
+    return table(("case", "triangles", "sub-layers, top to bottom", "prisms", "q_p", "our q_p by volume"), rows)
+
+
 def clean(measured, key="cases"):
     rows = []
     for row in measured[key]:

@@ -16,7 +16,7 @@ def _ticks(low, high, most=8):
     return [k * step for k in range(first, math.floor(high / step + 1e-9) + 1)]
 
 
-def plot(title, x_label, y_label, series, x_range, y_range):
+def plot(title, x_label, y_label, series, x_range, y_range, legend_top=TOP + 14):
     """SVG text. series: (name, points, "line" | "dashed" | "dots")."""
     def x(value):
         return LEFT + (value - x_range[0]) / (x_range[1] - x_range[0]) * (WIDTH - LEFT - RIGHT)
@@ -37,14 +37,29 @@ def plot(title, x_label, y_label, series, x_range, y_range):
     for i, (name, points, kind) in enumerate(series):
         colour = COLOURS[i % len(COLOURS)]
         inside = [(x(a), y(b)) for a, b in points if x_range[0] <= a <= x_range[1] and y_range[0] <= b <= y_range[1]]
-        if kind == "dots":
-            out += [f'<circle cx="{a:.1f}" cy="{b:.1f}" r="2" fill="{colour}"/>' for a, b in inside]
+        if kind in ("dots", "discs"):
+            radius = 2 if kind == "dots" else 5
+            out += [f'<circle cx="{a:.1f}" cy="{b:.1f}" r="{radius}" fill="{colour}"/>' for a, b in inside]
         else:
             dash = ' stroke-dasharray="6 4"' if kind == "dashed" else ""
             line = " ".join(f"{a:.1f},{b:.1f}" for a, b in inside)
             out.append(f'<polyline points="{line}" fill="none" stroke="{colour}" stroke-width="1.6"{dash}/>')
-        out.append(f'<text x="{WIDTH - RIGHT - 8}" y="{TOP + 14 + 17 * i}" text-anchor="end" fill="{colour}">{name}</text>')
+        out.append(f'<text x="{WIDTH - RIGHT - 8}" y="{legend_top + 17 * i}" text-anchor="end" fill="{colour}">{name}</text>')
     return "\n".join(out) + "\n</svg>\n"
+
+
+def pareto(example, match, paper):
+    """Front of policy matched (a dictionary of report.json's match), the meshes it made, and the paper's cases (prisms, quality)."""
+    log = lambda prisms: math.log10(prisms)
+    least = lambda row: min(row["mean_prism"], row["volume_weighted_prism"])
+    front = [(log(p["prisms"]), least(p)) for p in match["front"]]
+    knee = front[match["knee"]]
+    points = [(log(s["prisms"]), least(s)) for s in match["meshes"]]
+    others = [(log(prisms), quality) for prisms, quality in paper]
+    return plot(f"{example}: quality over prisms", "log10 of the number of prisms", "smaller of mean and volume-weighted q_p",
+                [("Pareto front of policy matched, predicted", front, "line"), ("meshes made on the way", points, "discs"),
+                 ("the paper's five cases, floor", others, "discs"), (f"knee: {10 ** knee[0]:,.0f} prisms, {knee[1]:.3f}", [knee], "discs")],
+                (math.floor(min(a for a, _ in front + others)), math.ceil(max(a for a, _ in others))), (0, 1.05), HEIGHT - BOTTOM - 17 * 4)
 
 
 def figure4(data):

@@ -1,0 +1,5 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+find_path(POLYCLIPPING_INCLUDE_DIR polyclipping/clipper.hpp)
+find_library(POLYCLIPPING_LIBRARY polyclipping)
+include(FindPackageHandleStandardArgs)
+find_package_handle_standard_args(Polyclipping REQUIRED_VARS POLYCLIPPING_LIBRARY POLYCLIPPING_INCLUDE_DIR)

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "pcbmesh/formats/deck.hpp"
+
+namespace pcbmesh::formats::deck {
+
+/// Writes one text file of a deck, whole or not at all, and lists it. @throws Error write_failed (701).
+void put_file(const std::filesystem::path& file, std::string_view text, Deck& deck);
+
+/// Writes x.run.sh and makes it the deck's command: goes to its own folder, then does what `body` says.
+void put_run_script(const std::filesystem::path& file, std::string_view what, std::string_view body, Deck& deck);
+
+}  // namespace pcbmesh::formats::deck

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+
+#include "pcbmesh/formats/registry.hpp"
+
+namespace pcbmesh::formats::vtu {
+
+/// Parts of equal numbers of elements, in a folder named like the file without its ending, then the .pvtu itself.
+void write_parallel(mesh::MeshSource& source, const std::filesystem::path& file, const WriteMeshOptions& options,
+                    const Progress& progress);
+/// One file for each group that has elements, volumes first, then the .vtm itself.
+void write_multiblock(mesh::MeshSource& source, const std::filesystem::path& file, const WriteMeshOptions& options,
+                      const Progress& progress);
+
+}  // namespace pcbmesh::formats::vtu

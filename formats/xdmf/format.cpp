@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "formats/xdmf/format.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <string>
+
+#include "formats/sink/file_sink.hpp"
+#include "formats/vtkhdf/heavy_file.hpp"
+#include "formats/xdmf/read_xdmf.hpp"
+
+namespace pcbmesh::formats::xdmf {
+namespace {
+
+using vtkhdf::HeavyFile;
+using vtkhdf::HeavyGrid;
+
+constexpr std::array<std::string_view, 2> extensions{".xdmf", ".xmf"};
+
+std::string escaped(std::string_view text) {
+  std::string out;
+  for (const char c : text) out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
+  return out;
+}
+
+class LightFile {
+ public:
+  LightFile(const std::filesystem::path& file, const std::filesystem::path& heavy_path, const HeavyFile& heavy)
+      : sink_(file), heavy_name_(escaped(heavy_path.filename().string())), heavy_(heavy) {
+    sink_.put("<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n <Domain>\n");
+  }
+  void put_grid(std::string_view name, const HeavyGrid& grid);
+  void begin_collection() { sink_.put("  <Grid Name=\"board\" GridType=\"Collection\" CollectionType=\"Spatial\">\n"); }
+  void end_collection() { sink_.put("  </Grid>\n"); }
+  void commit() {
+    sink_.put(" </Domain>\n</Xdmf>\n");
+    sink_.commit();
+  }
+
+ private:
+  void put_item(const std::string& dimensions, std::string_view type, std::size_t precision, const std::string& path) {
+    sink_.put(
+        fmt::format("     <DataItem Dimensions=\"{}\" NumberType=\"{}\" Precision=\"{}\" Format=\"HDF\">{}:{}</DataItem>\n",
+                    dimensions, type, precision, heavy_name_, path));
+  }
+
+  FileSink sink_;
+  std::string heavy_name_;
+  const HeavyFile& heavy_;
+};
+
+void LightFile::put_grid(std::string_view name, const HeavyGrid& grid) {
+  sink_.put(fmt::format("   <Grid Name=\"{}\" GridType=\"Uniform\">\n    <Geometry GeometryType=\"XYZ\">\n", name));
+  put_item(fmt::format("{} 3", heavy_.num_nodes), "Float", 8, "/mesh/points");
+  sink_.put(fmt::format("    </Geometry>\n    <Topology TopologyType=\"{}\" NumberOfElements=\"{}\"", grid.topology,
+                        grid.num_elements));
+  if (grid.num_columns > 0) sink_.put(fmt::format(" NodesPerElement=\"{}\"", grid.num_columns));
+  sink_.put(">\n");
+  put_item(
+      grid.num_columns > 0 ? fmt::format("{} {}", grid.num_elements, grid.num_columns) : fmt::format("{}", grid.num_numbers),
+      "Int", heavy_.index_bytes, grid.path);
+  sink_.put("    </Topology>\n");
+  for (const vtk::CellArray array : grid.arrays) {
+    sink_.put(fmt::format("    <Attribute Name=\"{}\" AttributeType=\"Scalar\" Center=\"Cell\">\n", vtk::name_of(array)));
+    put_item(fmt::format("{}", grid.num_elements), array == vtk::CellArray::quality ? "Float" : "Int", 4,
+             grid.path + "_" + std::string(vtk::name_of(array)));
+    sink_.put("    </Attribute>\n");
+  }
+  sink_.put("   </Grid>\n");
+}
+
+std::filesystem::path beside(const std::filesystem::path& file, std::string_view ending) {
+  std::filesystem::path out = file;
+  out.replace_extension();
+  out += ending;
+  return out;
+}
+
+void write(mesh::MeshSource& source, const std::filesystem::path& file, const WriteMeshOptions& options,
+           const Progress& progress) {
+  const std::string extension = file.extension().string();
+  const std::filesystem::path heavy_path = beside(file, ".vtkhdf");
+  // Numbers first: a light file that is there can be read.
+  const HeavyFile heavy = vtkhdf::write_heavy(source, heavy_path, options, progress);
+  const auto put_cells = [&](LightFile& out) {
+    for (const HeavyGrid& grid : heavy.cells) out.put_grid(heavy.cells.size() == 1 ? "cells" : grid.topology, grid);
+  };
+  if (!heavy.faces.empty()) {
+    LightFile faces(beside(file, "_faces" + extension), heavy_path, heavy);
+    faces.put_grid("faces", heavy.faces.front());
+    faces.commit();
+  }
+  LightFile all(beside(file, "_paraview" + extension), heavy_path, heavy);
+  all.begin_collection();
+  put_cells(all);
+  for (const HeavyGrid& grid : heavy.faces) all.put_grid("faces", grid);
+  all.end_collection();
+  all.commit();
+  LightFile cells(file, heavy_path, heavy);
+  if (heavy.cells.size() > 1) cells.begin_collection();
+  put_cells(cells);
+  if (heavy.cells.size() > 1) cells.end_collection();
+  cells.commit();
+}
+
+}  // namespace
+
+constinit const MeshFormat mesh_format{
+    "xdmf",     "XDMF 3 over HDF5 (dolfinx, meshio, ParaView)",
+    extensions, write,
+    read_xdmf,  {.written = all_kinds, .readable = all_kinds, .has_tags = true, .has_names = true}};
+
+}  // namespace pcbmesh::formats::xdmf

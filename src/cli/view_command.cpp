@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "pcbmesh/base/error.hpp"
+#include "pcbmesh/formats/registry.hpp"
+#include "pcbmesh/pipeline/mesh_board.hpp"
+#include "pcbmesh/pipeline/write_outputs.hpp"
+#include "pcbmesh/view/report.hpp"
+#include "src/cli/commands.hpp"
+#include "src/cli/mesh_or_draw.hpp"
+#include "src/cli/page_contents.hpp"
+#include "src/cli/study_options.hpp"
+#include "src/cli/terminal.hpp"
+
+namespace pcbmesh::cli {
+namespace {
+
+struct Options {
+  std::string board, from, output;
+  bool no_check = false, quiet = false;
+  int threads = 2;
+  std::shared_ptr<StudyOptions> study;
+};
+
+int run(const Options& options) {
+  const std::string ending = std::filesystem::path(options.output).extension().string();
+  if (ending != ".html" && ending != ".htm")
+    throw Error(ErrorCode::usage, fmt::format("-o '{}': a report ends in .html", options.output));
+  const study::Study study = study_from(*options.study);
+  const Progress progress = terminal_progress(options.quiet);
+  progress.at("read", 0);
+  const formats::ReadBoardResult read = formats::read_board(options.board, options.from, progress);
+  pipeline::MeshBoardResult result = mesh_or_draw(read.board, study, options.output, progress);
+  Diagnostics all = read.diagnostics;
+  all.merge(result.diagnostics);
+  result.diagnostics = std::move(all);
+  MeshRun mesh_run{read.board, result, layering::quality_report(result.mesh), nullptr, {}};
+  validation::Report report;
+  if (!options.no_check) {
+    progress.at("check", 0);
+    report = validation::check(pipeline::expand(result.mesh), nullptr, {options.threads});
+    mesh_run.check = &report;
+  }
+  progress.at("view", 0);
+  const std::string page = view::report_html(result.mesh, page_contents(mesh_run, 1.0));
+  clear_progress();
+  pipeline::write_binary_file(options.output, page);
+  if (!options.quiet)
+    fmt::print("{}: {} prisms, {} bytes; open it in a browser\n", options.output, grouped(result.mesh.num_prisms()),
+               grouped(static_cast<std::int64_t>(page.size())));
+  return mesh_run.check != nullptr && !report.passed() ? 1 : 0;
+}
+
+}  // namespace
+
+Command add_view_command(CLI::App& program) {
+  CLI::App* command = program.add_subcommand("view", "Mesh a board into one HTML page: 3D view, findings, quality");
+  auto options = std::make_shared<Options>();
+  command->add_option("board", options->board, "Board file, as for mesh")->required();
+  command->add_option("-o,--output", options->output, "The page, .html: one file, no network")->required();
+  command->add_option("--from", options->from, "Format of the board (default: by content and name)");
+  command->add_flag("--no-check", options->no_check, "Do not judge the mesh");
+  command->add_flag("--quiet", options->quiet, "Print errors alone");
+  command->add_option("--threads", options->threads, "Threads of the check (default 2)")->check(CLI::Range(1, 256));
+  options->study = add_study_options(*command);
+  command->footer(
+      "'pcbmesh mesh ... --html report.html' writes the same page beside a mesh.\n\n"
+      "Examples:\n"
+      "  pcbmesh view board.kicad_pcb -o board.html\n"
+      "  pcbmesh view board.kicad_pcb --nets /USB_P,/USB_N --frequency 10GHz -o usb.html");
+  return {command, [options] { return run(*options); }};
+}
+
+}  // namespace pcbmesh::cli

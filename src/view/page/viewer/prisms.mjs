@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The mesh as the program knows it: planar triangles times slabs. Lengths in millimetres.
+import { unzigzag } from "./decode.mjs";
+
+export class Prisms {
+  constructor(tables, arrays) {
+    this.tables = tables;
+    this.num_points = arrays.x.length;
+    this.num_triangles = arrays.corner0.length;
+    const [x0, y0, step] = tables.grid;
+    this.x = new Float64Array(this.num_points);
+    this.y = new Float64Array(this.num_points);
+    for (let i = 0; i < this.num_points; ++i) {
+      this.x[i] = 1e3 * (x0 + step * arrays.x[i]);
+      this.y[i] = 1e3 * (y0 + step * arrays.y[i]);
+    }
+    const corners = (this.corners = new Int32Array(3 * this.num_triangles));
+    for (let t = 0; t < this.num_triangles; ++t) {
+      const a = (corners[3 * t] = arrays.corner0[t]);
+      corners[3 * t + 1] = a + unzigzag(arrays.corner1[t]);
+      corners[3 * t + 2] = a + unzigzag(arrays.corner2[t]);
+    }
+    this.column = arrays.column;
+    this.num_slabs = tables.columns[0].length;
+    this.groups = new Int32Array(tables.columns.length * this.num_slabs);
+    tables.columns.forEach((column, c) => this.groups.set(column, c * this.num_slabs));
+    // Slabs: z of bottom and top, first sub-layer, layer.
+    this.first_sublayer = new Int32Array(this.num_slabs + 1);
+    tables.slab_of_sublayer.forEach((slab, k) => (this.first_sublayer[slab + 1] = k + 1));
+    this.z = tables.z_m.map((z) => z * 1e3);
+    this.slab_z = Array.from(this.first_sublayer, (k) => this.z[k]);
+    this.layer_of_slab = Array.from({ length: this.num_slabs }, (_, s) => {
+      for (const column of tables.columns) if (column[s] >= 0) return tables.groups[column[s]].layer;
+      return -1;
+    });
+    this.caps = { tag: arrays.cap_tag, place: arrays.cap_place, triangle: arrays.cap_triangle };
+    this.walls = { tag: arrays.wall_tag, slab: arrays.wall_slab, a: arrays.wall_a, b: arrays.wall_b.map((d, i) => arrays.wall_a[i] + unzigzag(d)) };
+    this.find_neighbours();
+    this.measure();
+  }
+
+  /// neighbour[3 t + i]: triangle across the side from corner i to corner i + 1, or -1.
+  find_neighbours() {
+    const { corners, num_points } = this;
+    const num_sides = corners.length;
+    const neighbour = (this.neighbour = new Int32Array(num_sides).fill(-1));
+    const starts = new Int32Array(num_points + 1);
+    const end_of = (side) => corners[side % 3 === 2 ? side - 2 : side + 1];
+    for (let i = 0; i < num_sides; ++i) ++starts[Math.min(corners[i], end_of(i)) + 1];
+    for (let v = 0; v < num_points; ++v) starts[v + 1] += starts[v];
+    const next = starts.slice(0, num_points);
+    const sides = new Int32Array(num_sides);
+    for (let i = 0; i < num_sides; ++i) sides[next[Math.min(corners[i], end_of(i))]++] = i;
+    for (let v = 0; v < num_points; ++v) {
+      for (let p = starts[v]; p < starts[v + 1]; ++p) {
+        const a = sides[p];
+        if (neighbour[a] >= 0) continue;
+        for (let q = p + 1; q < starts[v + 1]; ++q) {
+          const b = sides[q];
+          if (corners[a] !== end_of(b) || corners[b] !== end_of(a)) continue;
+          neighbour[a] = (b / 3) | 0;
+          neighbour[b] = (a / 3) | 0;
+          break;
+        }
+      }
+    }
+    this.border = [];
+    for (let i = 0; i < num_sides; ++i) if (neighbour[i] < 0) this.border.push(i);
+  }
+
+  measure() {
+    const { corners, x, y } = this;
+    const n = this.num_triangles;
+    this.area = new Float64Array(n);
+    this.beta = new Float64Array(n);
+    this.longest = new Float64Array(n);
+    let [min_x, min_y, max_x, max_y] = [Infinity, Infinity, -Infinity, -Infinity];
+    for (let i = 0; i < this.num_points; ++i) {
+      if (x[i] < min_x) min_x = x[i];
+      if (x[i] > max_x) max_x = x[i];
+      if (y[i] < min_y) min_y = y[i];
+      if (y[i] > max_y) max_y = y[i];
+    }
+    this.box = { min_x, min_y, max_x, max_y };
+    this.size_range = [Infinity, 0];
+    for (let t = 0; t < n; ++t) {
+      const a = corners[3 * t], b = corners[3 * t + 1], c = corners[3 * t + 2];
+      const ux = x[b] - x[a], uy = y[b] - y[a], vx = x[c] - x[a], vy = y[c] - y[a], wx = vx - ux, wy = vy - uy;
+      const u = ux * ux + uy * uy, v = vx * vx + vy * vy, w = wx * wx + wy * wy;
+      this.area[t] = 0.5 * (ux * vy - uy * vx);
+      this.beta[t] = u + v + w;
+      const longest = (this.longest[t] = Math.sqrt(Math.max(u, v, w)));
+      if (longest < this.size_range[0]) this.size_range[0] = longest;
+      if (longest > this.size_range[1]) this.size_range[1] = longest;
+    }
+  }
+
+  group(slab, t) {
+    return this.groups[this.column[t] * this.num_slabs + slab];
+  }
+  num_cuts(slab) {
+    return this.first_sublayer[slab + 1] - this.first_sublayer[slab];
+  }
+  height(slab) {
+    return (this.slab_z[slab + 1] - this.slab_z[slab]) / this.num_cuts(slab);
+  }
+  /// Ye and Daniels, equations 1 and 2.
+  triangle_quality(t) {
+    return (4 * Math.sqrt(3) * this.area[t]) / this.beta[t];
+  }
+  prism_quality(slab, t) {
+    const h = this.height(slab), sum = this.beta[t] + h * h;
+    return ((32 * Math.sqrt(3)) / 3) * ((this.area[t] * h) / (sum * Math.sqrt(sum)));
+  }
+
+  /// Id of a prism as it is written: dense, ascending by sub-layer and triangle.
+  prism_id(sublayer, t) {
+    let id = 0;
+    for (let s = 0, k = 0; s < this.num_slabs; ++s) {
+      let solid = 0, before = 0;
+      for (let u = 0; u < this.num_triangles; ++u) {
+        if (this.group(s, u) < 0) continue;
+        ++solid;
+        if (u < t) ++before;
+      }
+      for (; k < this.first_sublayer[s + 1]; ++k) {
+        if (k === sublayer) return id + before;
+        id += solid;
+      }
+    }
+    return -1;
+  }
+
+  /// Face tag of a boundary face, or -1. kind: "up", "down" or "wall" (a -> b).
+  face_tag(kind, slab, t, a, b) {
+    if (kind === "wall") {
+      const w = this.walls;
+      for (let i = 0; i < w.tag.length; ++i)
+        if (w.slab[i] === slab && ((w.a[i] === a && w.b[i] === b) || (w.a[i] === b && w.b[i] === a))) return w.tag[i];
+      return -1;
+    }
+    const place = 2 * this.first_sublayer[slab + (kind === "up" ? 1 : 0)] + (kind === "up" ? 1 : 0);
+    const c = this.caps;
+    for (let i = 0; i < c.tag.length; ++i) if (c.triangle[i] === t && c.place[i] === place) return c.tag[i];
+    return -1;
+  }
+
+  /// Triangle that holds a point, or -1.
+  locate(px, py) {
+    const { corners, x, y } = this;
+    for (let t = 0; t < this.num_triangles; ++t) {
+      let inside = true;
+      for (let i = 0; i < 3 && inside; ++i) {
+        const a = corners[3 * t + i], b = corners[3 * t + ((i + 1) % 3)];
+        inside = (x[b] - x[a]) * (py - y[a]) - (y[b] - y[a]) * (px - x[a]) >= 0;
+      }
+      if (inside) return t;
+    }
+    return -1;
+  }
+
+  /// Where the line p + s d (in the plane) leaves triangle t after s: { s, side }.
+  leave(t, p, d, s) {
+    const { corners, x, y } = this;
+    let out = { s: Infinity, side: -1 };
+    for (let i = 0; i < 3; ++i) {
+      const a = corners[3 * t + i], b = corners[3 * t + ((i + 1) % 3)];
+      const nx = y[b] - y[a], ny = -(x[b] - x[a]); // outwards
+      const speed = nx * d[0] + ny * d[1];
+      if (speed <= 0) continue;
+      const at = (nx * (x[a] - p[0]) + ny * (y[a] - p[1])) / speed;
+      if (at < out.s) out = { s: at, side: 3 * t + i };
+    }
+    return { s: Math.max(out.s, s), side: out.side };
+  }
+
+  /// First border side that the line enters through in (from, to): { s, side }.
+  enter(p, d, from, to) {
+    const { corners, x, y } = this;
+    let best = { s: to, side: -1 };
+    for (const side of this.border) {
+      const a = corners[side], b = corners[side % 3 === 2 ? side - 2 : side + 1];
+      const ex = x[b] - x[a], ey = y[b] - y[a];
+      const nx = ey, ny = -ex;
+      const speed = nx * d[0] + ny * d[1];
+      if (speed >= 0) continue;
+      const s = (nx * (x[a] - p[0]) + ny * (y[a] - p[1])) / speed;
+      if (s <= from || s >= best.s) continue;
+      const along = ex * (p[0] + s * d[0] - x[a]) + ey * (p[1] + s * d[1] - y[a]);
+      if (along >= 0 && along <= ex * ex + ey * ey) best = { s, side };
+    }
+    return best;
+  }
+
+  /// First shown cell along the ray inside one slab, for s in [from, to]: { s, t, side } or null. `is_shown(t)`.
+  /// side = -1 where the ray is inside the cell from the start.
+  pierce(origin, direction, from, to, is_shown) {
+    const p = [origin[0], origin[1]], d = [direction[0], direction[1]];
+    let s = from;
+    let t = this.locate(p[0] + s * d[0], p[1] + s * d[1]);
+    let side = -1;
+    for (let guard = 0; guard < 2 * this.num_triangles + 10; ++guard) {
+      if (t < 0) {
+        const entry = this.enter(p, d, s, to);
+        if (entry.side < 0) return null;
+        s = entry.s;
+        side = entry.side;
+        t = (side / 3) | 0;
+      }
+      if (is_shown(t)) return { s, t, side };
+      const exit = this.leave(t, p, d, s);
+      if (exit.side < 0 || exit.s >= to) return null;
+      s = exit.s;
+      const next = this.neighbour[exit.side];
+      side = -1;
+      if (next >= 0)
+        for (let i = 0; i < 3; ++i) if (this.neighbour[3 * next + i] === t) side = 3 * next + i;
+      t = next;
+    }
+    return null;
+  }
+}

@@ -1,0 +1,141 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Pictures: what they show, that they come out the same every time, and what is said when they can't be drawn."""
+import io
+import json
+import re
+import sys
+import tempfile
+import unittest
+import xml.etree.ElementTree as xml
+from pathlib import Path
+
+from program import ROOT, SKIPPED, run
+
+try:
+    from PIL import Image
+except ImportError:
+    print("skipped: python3-pil is not installed")
+    sys.exit(SKIPPED)
+
+VIA = (ROOT / "examples/via.json", "--air", "0", "--policy", "average")
+STRIP = (ROOT / "examples/microstrip.json",)
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+def area(path):
+    """Area of an SVG path of straight lines by the even-odd rule, for loops that do not cross: sum of signed areas."""
+    total = 0
+    for loop in re.findall(r"M([^Z]+)Z", path):
+        points = [tuple(map(float, p.split())) for p in loop.split("L")]
+        total += sum(a[0] * b[1] - b[0] * a[1] for a, b in zip(points, points[1:] + points[:1])) / 2
+    return total
+
+
+class Pictures(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.out = Path(folder.name)
+
+    def draw(self, *arguments, name="x.png"):
+        done = run("render", *arguments, "-o", self.out / name, "--quiet")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return (self.out / name).read_bytes()
+
+    def picture(self, *arguments):
+        return Image.open(io.BytesIO(self.draw(*arguments)))
+
+    def colours(self, *arguments):
+        picture = self.picture(*arguments, "--background", "#ffffff", "--edges", "off").convert("RGB")
+        return {c: n / (picture.width * picture.height) for n, c in picture.getcolors(1 << 24)}
+
+    def test_same_bytes_every_time(self):
+        self.assertEqual(self.draw(*VIA), self.draw(*VIA))
+        self.assertEqual(self.draw(*STRIP, "--view", "top", name="x.svg"), self.draw(*STRIP, "--view", "top", name="x.svg"))
+
+    def test_size_and_transparency(self):
+        picture = self.picture(*VIA, "--size", "320x200", "--background", "transparent")
+        self.assertEqual((picture.size, picture.mode), ((320, 200), "RGBA"))
+        self.assertEqual(picture.getpixel((0, 0))[3], 0)
+        self.assertEqual(picture.getpixel((160, 100))[3], 255)
+
+    def test_top_view_shows_the_areas_of_the_layout(self):
+        # Seen from above, one layer alone: the line of 1.1 mm on a board of 24 x 10 mm, and its pads.
+        colours = self.colours(*STRIP, "--view", "top", "--layers", "top", "--only-nets", "LINE", "--size", "800x400")
+        ground = max((c for c in colours if c != (255, 255, 255)), key=colours.get)
+        self.assertTrue(ground[0] > ground[1] > ground[2], f"copper, not {ground}")
+        box = self.picture(*STRIP, "--view", "top", "--layers", "top", "--only-nets", "LINE", "--size", "800x400", "--background", "transparent").getbbox()
+        # From pad to pad 21.6 mm, pads 1.4 mm high.
+        self.assertAlmostEqual((box[2] - box[0]) / (box[3] - box[1]), 21.6 / 1.4, delta=0.6)
+
+    def test_everything_fits_whatever_the_view(self):
+        for view in ("iso", "top", "bottom", "front", "back", "left", "right"):
+            for explode in ("0", "2"):
+                picture = self.picture(*VIA, "--view", view, "--explode", explode, "--size", "300x200", "--background", "transparent")
+                left, top, right, bottom = picture.getbbox()
+                self.assertTrue(left > 0 and top > 0 and right < 300 and bottom < 200, (view, explode))
+                self.assertTrue(right - left > 250 or bottom - top > 160, (view, explode, "fills the picture"))
+
+    def test_section_lays_the_barrel_open(self):
+        whole = self.colours(*VIA, "--view", "front", "--colour", "net")
+        cut = self.colours(*VIA, "--view", "front", "--colour", "net", "--section", "y=1.5748mm")
+        self.assertGreater(len(cut), len(whole), "the signal's colour joins the shields' and the laminate's")
+
+    def test_hidden_means_gone(self):
+        only = self.colours(*VIA, "--hide", "FR4")
+        brown = sum(n for c, n in only.items() if c[0] > c[2] + 40)
+        self.assertGreater(brown, 0.05)
+        self.assertEqual([c for c in only if abs(c[0] - 201) < 4 and abs(c[1] - 186) < 4], [])
+
+    def test_plan_is_a_drawing_of_true_areas(self):
+        text = self.draw(*STRIP, "--view", "top", "--layers", "top", "--only-nets", "LINE", "--title", "A <line> & \"its\" pads", name="x.svg").decode()
+        tree = xml.fromstring(text)
+        self.assertEqual(tree.find(f"{SVG}title").text, 'A <line> & "its" pads')
+        paths = [p.get("d") for p in tree.iter(f"{SVG}path") if p.get("fill", "none") != "none"]
+        mesh = run("mesh", *STRIP, "-o", self.out / "m.msh", "--quiet")
+        self.assertEqual(mesh.returncode, 0, mesh.stderr)
+        tags = json.loads((self.out / "m.tags.json").read_text())
+        volumes = {v["name"]: v for v in tags["volumes"]}
+        expected = volumes["top|copper|LINE"]["volume_m3"] / 35e-6 * 1e6
+        self.assertAlmostEqual(sum(map(area, paths)), expected, delta=1e-3 * expected)
+        self.assertIn(" mm</text>", text)
+        self.assertIn("copper", text)
+
+    def test_slanted_svg_has_the_picture_and_a_legend(self):
+        tree = xml.fromstring(self.draw(*VIA, "--colour", "q_p", "--title", "Via", name="x.svg").decode())
+        self.assertTrue(next(tree.iter(f"{SVG}image")).get("href").startswith("data:image/png;base64,"))
+        self.assertIn("Prism quality q_p", [t.text for t in tree.iter(f"{SVG}text")])
+
+    def test_usage(self):
+        for arguments, words in (((*VIA, "-o", self.out / "x.jpg"), ".png or .svg"), ((*VIA, "-o", self.out / "x.png", "--view", "up"), "iso"),
+                                 ((*VIA, "-o", self.out / "x.png", "--colour", "red"), "q_p"), ((*VIA, "-o", self.out / "x.png", "--size", "9x9"), "16"),
+                                 ((*VIA, "-o", self.out / "x.png", "--section", "w=3"), "x=10mm")):
+            done = run("render", *arguments)
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(words, done.stderr)
+        done = run("render", *VIA, "-o", self.out / "x.png", "--layers", "L33")
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("did you mean 'L3'", done.stderr)
+        done = run("render", *VIA, "-o", self.out / "x.png", "--hide", "FR4,copper")
+        self.assertIn("nothing is left to draw", done.stderr)
+        self.assertEqual(list(self.out.iterdir()), [])
+
+    def test_refusal_is_drawn(self):
+        board = json.loads((ROOT / "examples/microstrip.json").read_text())
+        board["outline"] = [board["outline"], {"rect": [[20, 6], [30, 14]]}]
+        (self.out / "b.json").write_text(json.dumps(board))
+        for command, output in (("mesh", "b.msh"), ("view", "b.html"), ("render", "b.png")):
+            picture = self.out / "b.refusal.svg"
+            picture.unlink(missing_ok=True)
+            done = run(command, self.out / "b.json", "-o", self.out / output)
+            self.assertEqual(done.returncode, 3)
+            self.assertIn("b.refusal.svg", done.stderr)
+            self.assertFalse((self.out / output).exists())
+            text = " ".join(t.text for t in xml.fromstring(picture.read_text()).iter(f"{SVG}text"))
+            for words in ("error 302", "(20, 6) mm", "board outlines 1 and 2 overlap"):
+                self.assertIn(words, text)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,292 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The page in a real browser: headless Chromium opens it, turns, toggles, explodes, cuts and picks, and the picture is looked at."""
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+from program import DATA, ROOT, SKIPPED, run
+
+try:
+    import meshio
+    import websocket  # noqa: F401
+    from PIL import Image, ImageChops  # noqa: F401
+    from browser import Browser, find_chromium
+except ImportError as missing:
+    print(f"skipped: {missing}; scripts/setup installs it")
+    sys.exit(SKIPPED)
+if not find_chromium():
+    print("skipped: chromium is not installed; scripts/setup does it")
+    sys.exit(SKIPPED)
+
+COPPER, LAMINATE = (205, 127, 60), (201, 186, 126)
+
+
+def share_of(picture, colour, tolerance=14):
+    """Share of pixels whose hue is that of a colour: light scales all three channels by one factor."""
+    count = 0
+    pixels = list(picture.resize((picture.width // 2, picture.height // 2), 0).getdata())
+    for p in pixels:
+        scale = sum(p) / sum(colour)
+        if 0.45 < scale < 1.1 and all(abs(a - scale * b) < tolerance for a, b in zip(p, colour)):
+            count += 1
+    return count / len(pixels)
+
+
+def difference(a, b):
+    """Share of pixels that differ visibly."""
+    red, green, blue = ImageChops.difference(a, b).split()
+    changed = ImageChops.lighter(ImageChops.lighter(red, green), blue).point(lambda v: 255 if v > 24 else 0)
+    return changed.histogram()[255] / (a.width * a.height)
+
+
+class Pages(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.out = Path(cls.folder.name)
+        boards = {"via": (ROOT / "examples/via.json", "--air", "0", "--policy", "average"),
+                  "serpentine": (ROOT / "examples/serpentine.json", "--air", "0", "--policy", "minimum", "--sublayers", "floor")}
+        if DATA.is_dir():
+            boards["board"] = (DATA / "kicad/05_stickhub_2L_v6.kicad_pcb",)
+        for name, (board, *options) in boards.items():
+            done = run("mesh", board, *options, "-o", cls.out / f"{name}.msh", "-o", cls.out / f"{name}.vtu", "--html", cls.out / f"{name}.html", "--quiet")
+            assert done.returncode == 0, done.stderr
+        cls.browser = Browser()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.close()
+        cls.folder.cleanup()
+
+    def open(self, name):
+        if not (self.out / f"{name}.html").exists():
+            self.skipTest("no real boards here")
+        self.browser.console.clear()
+        self.browser.requests.clear()
+        self.browser.open(self.out / f"{name}.html")
+
+    def tearDown(self):
+        self.assertEqual(self.browser.console, [])
+        self.assertTrue(all(url.startswith(("file:", "data:", "blob:")) for url in self.browser.requests), self.browser.requests)
+
+    def canvas(self):
+        self.browser.settle()
+        return self.browser.picture(selector="#canvas")
+
+    def page(self, expression):
+        return self.browser.run(f"(() => {{ const page = window.pcbmesh.page, stage = page.stage, prisms = page.prisms; return {expression}; }})()")
+
+    def check_whole(self):
+        """What every page must do."""
+        b = self.browser
+        first = self.canvas()
+        legend = b.run("[...document.querySelectorAll('#legend li .name')].map((e) => e.textContent)")
+        self.assertIn("copper", legend)
+        self.assertGreater(share_of(first, COPPER), 0.005, "copper is to be seen")
+        self.assertGreater(share_of(first, LAMINATE), 0.02, "laminate is to be seen")
+
+        x, y, width, height = b.box("#canvas")
+        before = self.page("stage.angles().azimuth_deg")
+        b.drag(x + 0.5 * width, y + 0.5 * height, x + 0.7 * width, y + 0.55 * height)
+        self.assertGreater(abs(self.page("stage.angles().azimuth_deg") - before), 10, "dragging turns")
+        self.assertGreater(difference(first, self.canvas()), 0.05)
+
+        b.click_on("#view_iso")
+        self.assertLess(difference(first, self.canvas()), 0.01, "the same view gives the same picture")
+
+        b.run("[...document.querySelectorAll('#materials label')].find((l) => l.textContent.startsWith('copper')).click()")
+        b.settle()
+        bare = self.canvas()
+        self.assertEqual(share_of(bare, COPPER, 8), 0, "hidden copper is gone")
+        self.assertNotIn("copper", b.run("[...document.querySelectorAll('#legend li .name')].map((e) => e.textContent)"))
+        b.run("document.querySelector('#materials button.link').click()")
+        self.assertLess(difference(first, self.canvas()), 0.01, "and comes back")
+
+        faces = self.page("(stage.need_faces(), stage.num_faces)")
+        b.set_value("#explode", 1.5)
+        self.assertGreater(difference(first, self.canvas()), 0.05, "layers fly apart")
+        self.assertGreater(self.page("(stage.need_faces(), stage.num_faces)"), 1.3 * faces, "and show their own faces")
+        b.set_value("#explode", 0)
+
+        plain = self.canvas()
+        b.click_on("#theme")
+        dark = b.picture()
+        self.assertLess(sum(dark.getpixel((dark.width - 5, 5))), 200)
+        b.click_on("#theme")
+        self.assertLess(difference(plain, self.canvas()), 0.01)
+        return first
+
+    def expect_pick(self, name, kind=None):
+        """The picked ids against the mesh file, read by meshio: the cell of that number holds the place and has that group."""
+        picked = self.page("page.picked")
+        self.assertIsNotNone(picked)
+        mesh = meshio.read(self.out / f"{name}.vtu")
+        wedge = mesh.points[mesh.cells_dict["wedge"][picked["prism"]]]
+        x, y, z = (v * 1e-3 for v in picked["at"])
+        self.assertTrue(wedge[:, 2].min() - 1e-9 <= z <= wedge[:, 2].max() + 1e-9, "the place is in the cell's height")
+        corners = wedge[:3, :2]
+        turns = [(corners[(k + 1) % 3][0] - corners[k][0]) * (y - corners[k][1]) - (corners[(k + 1) % 3][1] - corners[k][1]) * (x - corners[k][0]) for k in range(3)]
+        self.assertTrue(min(turns) > -1e-12 or max(turns) < 1e-12, "the place is in the cell's triangle")
+        self.assertEqual(picked["group_id"], int(mesh.cell_data_dict["volume_tag"]["wedge"][picked["prism"]]))
+        if kind:
+            self.assertEqual(picked["kind"], kind)
+        return picked
+
+    def test_via(self):
+        self.open("via")
+        self.check_whole()
+        b = self.browser
+        x, y, width, height = b.box("#canvas")
+        b.click(x + 0.5 * width, y + 0.5 * height)
+        b.settle()
+        picked = self.expect_pick("via", "up")
+        self.assertEqual((picked["layer"], picked["face_tag"]), ("L1", "zmax"))
+        text = b.run("document.querySelector('#pick').innerText")
+        for words in ("Prism", "L1", "FR4", "zmax", f"{picked['q_p']:.3f}"[:4]):
+            self.assertIn(words, text)
+
+        # A cut through the middle shows the via's barrel, from the shield layers' copper to the drill.
+        b.key("Escape")
+        b.set_value("#section_axis", "y")
+        b.set_value("#section_at", 0.5)
+        b.settle()
+        self.assertTrue(self.page("stage.plane.keep_above"), "the plane cuts away what stands before it")
+        hit = self.page("(() => { const p = stage.project([(prisms.box.min_x + prisms.box.max_x) / 2, (prisms.box.min_y + prisms.box.max_y) / 2, (prisms.slab_z[0] + prisms.slab_z.at(-1)) / 2], 5); return stage.pick(p[0], p[1]); })()")
+        self.assertEqual(hit["kind"], "section")
+        self.assertEqual(self.page(f"page.describe({{slab: {hit['slab']}, t: {hit['t']}, kind: 'section', at: [0, 0, 0]}}).net"), "SIG")
+        b.set_value("#section_axis", "none")
+
+        # Walls have their tags too.
+        b.click_on("#view_front")
+        b.settle()
+        px, py = self.page("stage.project([(prisms.box.min_x + prisms.box.max_x) / 2, prisms.box.min_y, (prisms.slab_z[4] + prisms.slab_z[5]) / 2], 4)")
+        b.click(x + px, y + py)
+        b.settle()
+        picked = self.expect_pick("via", "wall")
+        self.assertEqual(picked["face_tag"], "ymin")
+
+    def test_serpentine(self):
+        self.open("serpentine")
+        self.check_whole()
+        # The trace alone, found by its net.
+        b = self.browser
+        nets = b.run("[...document.querySelectorAll('#nets .name')].map((e) => e.textContent)")
+        signal = next(n for n in nets if n not in ("GND", "no net"))
+        b.run(f"[...document.querySelectorAll('#nets button.only')][{nets.index(signal)}].click()")
+        self.browser.settle()
+        self.assertEqual(set(self.page("page.prisms.tables.groups.filter((g, i) => !page.hidden[i]).map((g) => page.prisms.tables.nets[g.net].name)")), {signal})
+        b.click_on("#view_fit")
+        self.assertGreater(share_of(self.canvas(), COPPER), 0.01)
+
+    def test_every_colour_mode_has_a_legend_and_a_picture_of_its_own(self):
+        self.open("via")
+        seen = []
+        for mode in ("material", "net", "layer", "group", "tag", "q_p", "q_t", "size"):
+            self.browser.set_value("#colour", mode)
+            picture = self.canvas()
+            self.assertTrue(all(difference(picture, other) > 0.02 for other in seen), mode)
+            seen.append(picture)
+            self.assertGreater(self.browser.run("document.querySelector('#legend').innerText.split('\\n').length"), 1)
+
+    def test_real_board(self):
+        self.open("board")
+        self.check_whole()
+        b = self.browser
+        x, y, width, height = b.box("#canvas")
+        b.click_on("#view_top")
+        b.settle()
+        b.click(x + 0.5 * width, y + 0.5 * height)
+        b.settle()
+        self.expect_pick("board", "up")
+        # The list of findings flies there.
+        b.run("(() => { const f = document.querySelectorAll('.fly button'); f[f.length - 1].click(); })()")
+        b.settle()
+        self.assertFalse(b.run("document.querySelector('#pin').hidden"))
+        self.assertIn("worst prism", b.run("document.querySelector('#pin').textContent"))
+        self.assertLess(self.page("stage.camera.position.distanceTo(stage.controls.target)"), 20)
+        # While it moves, frames keep coming, of whatever there is time for.
+        b.click_on("#view_iso")
+        b.settle()
+        b.run("window.frames_seen = 0; { const s = window.pcbmesh.page.stage, o = s.on_frame; s.on_frame = () => { ++window.frames_seen; o(); }; }")
+        b.drag(x + 0.4 * width, y + 0.5 * height, x + 0.6 * width, y + 0.5 * height, 20)
+        self.assertGreater(b.run("window.frames_seen"), 2)
+
+    def test_keyboard(self):
+        self.open("via")
+        b = self.browser
+        b.run("document.querySelector('#canvas').focus()")
+        before = self.page("stage.angles()")
+        b.key("ArrowRight")
+        b.key("ArrowUp")
+        after = self.page("stage.angles()")
+        self.assertAlmostEqual(after["azimuth_deg"] - before["azimuth_deg"], 5, delta=0.1)
+        self.assertAlmostEqual(after["elevation_deg"] - before["elevation_deg"], 5, delta=0.1)
+        target = self.page("stage.controls.target.x")
+        b.key("ArrowRight", shift=True)
+        self.assertNotEqual(self.page("stage.controls.target.x"), target)
+        distance = self.page("stage.camera.position.distanceTo(stage.controls.target)")
+        b.key("+")
+        self.assertLess(self.page("stage.camera.position.distanceTo(stage.controls.target)"), 0.9 * distance)
+        b.key("f")
+        b.settle()
+        b.key("Enter")
+        b.settle()
+        self.assertFalse(b.run("document.querySelector('#pick').hidden"))
+        self.assertIn("Prism", b.run("document.querySelector('#live').textContent"))
+        b.key("Escape")
+        self.assertTrue(b.run("document.querySelector('#pick').hidden"))
+        b.key("e")
+        self.assertFalse(self.page("stage.edges"))
+        b.key("x")
+        self.assertEqual(self.page("page.explode"), 1)
+        b.key("?")
+        self.assertTrue(b.run("document.querySelector('#help').open"))
+        b.key("Escape")
+        # The view is reached with the tabulator alone.
+        b.open(self.out / "via.html")
+        b.key("Tab")
+        b.key("Enter")
+        self.assertEqual(b.run("document.activeElement.id"), "canvas", "the first link leads to the view")
+        b.run("document.activeElement.blur()")
+        reached = set()
+        for _ in range(80):
+            b.key("Tab")
+            reached.add(b.run("document.activeElement.id"))
+        for control in ("colour", "edges", "explode", "section_axis", "theme", "print"):
+            self.assertIn(control, reached)
+
+    def test_names_for_those_who_listen(self):
+        self.open("serpentine")
+        nodes = self.browser.call("Accessibility.getFullAXTree")["nodes"]
+        nameless = [n for n in nodes if not n.get("ignored") and n["role"]["value"] in ("button", "checkbox", "slider", "combobox", "searchbox", "application", "image", "dialog")
+                    and not n.get("name", {}).get("value")]
+        self.assertEqual(nameless, [])
+        roles = {n["role"]["value"] for n in nodes}
+        for role in ("application", "slider", "checkbox", "combobox", "button", "status", "complementary", "main", "navigation"):
+            self.assertIn(role, roles)
+
+    def test_prints(self):
+        self.open("via")
+        import base64
+        raw = base64.b64decode(self.browser.call("Page.printToPDF", printBackground=True)["data"])
+        self.assertTrue(raw.startswith(b"%PDF"))
+        self.assertGreater(len(raw), 30000)
+        self.assertIn(b"/Subtype /Image", raw)
+
+    def test_a_hostile_name_stays_a_name(self):
+        board = self.out / "hostile.json"
+        text = (ROOT / "examples/via.json").read_text()
+        self.assertIn('"SIG"', text)
+        board.write_text(text.replace('"SIG"', '"</script><img src=x onerror=alert(1)>{{title}}"'))
+        done = run("view", board, "--air", "0", "-o", self.out / "hostile.html")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.open("hostile")
+        self.assertIn("</script><img src=x onerror=alert(1)>{{title}}", self.browser.run("[...document.querySelectorAll('#nets .name')].map((e) => e.textContent)"))
+        self.assertEqual(self.browser.run("document.querySelectorAll('img').length"), 1)
+
+
+if __name__ == "__main__":
+    unittest.main()
