@@ -155,8 +155,7 @@ TEST(Check, ReportsForPeopleAndMachines) {
   const Report report = check(bad.mesh, &bad.expectation);
   const std::string text = to_text(report);
   EXPECT_EQ(text.rfind("FAILED: 2 kinds of error in 150 cells, 145 nodes, 160 tagged faces\n", 0), 0u) << text;
-  EXPECT_NE(text.find("error node.orphan: 1 nodes are a corner of no cell\n    at (0.001, 0.002, 1), node 144\n"),
-            std::string::npos)
+  EXPECT_NE(text.find("error node.orphan: 1 nodes belong to no cell\n    at (0.001, 0.002, 1), node 144\n"), std::string::npos)
       << text;
   const auto json = nlohmann::json::parse(to_json(report));
   EXPECT_FALSE(json.at("passed").get<bool>());
