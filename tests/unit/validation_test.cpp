@@ -155,7 +155,7 @@ TEST(Check, ReportsForPeopleAndMachines) {
   const Report report = check(bad.mesh, &bad.expectation);
   const std::string text = to_text(report);
   EXPECT_EQ(text.rfind("FAILED: 2 kinds of error in 150 cells, 145 nodes, 160 tagged faces\n", 0), 0u) << text;
-  EXPECT_NE(text.find("error node.orphan: 1 nodes are a corner of no cell\n    at (0.0012, 0.0023, 0), node 144\n"),
+  EXPECT_NE(text.find("error node.orphan: 1 nodes belong to no cell\n    at (0.0012, 0.0023, 0), node 144\n"),
             std::string::npos)
       << text;
   const auto json = nlohmann::json::parse(to_json(report));
