@@ -38,7 +38,7 @@ int run(const Options& options) {
   Diagnostics all = read.diagnostics;
   all.merge(result.diagnostics);
   result.diagnostics = std::move(all);
-  MeshRun mesh_run{read.board, result, layering::quality_report(result.mesh), nullptr, {}};
+  MeshRun mesh_run{read.board, result, layering::quality_report(result.mesh), {}, nullptr, {}};
   validation::Report report;
   if (!options.no_check) {
     progress.at("check", 0);
