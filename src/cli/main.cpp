@@ -32,10 +32,10 @@ int run(int argc, char** argv) {
   program.set_version_flag("--version", std::string("pcbmesh ") + std::string(pcbmesh::version()));
   program.require_subcommand(1);
   program.get_formatter()->column_width(34);
-  const std::array commands{pcbmesh::cli::add_mesh_command(program),  pcbmesh::cli::add_init_command(program),
-                            pcbmesh::cli::add_ports_command(program), pcbmesh::cli::add_inspect_command(program),
-                            pcbmesh::cli::add_view_command(program),  pcbmesh::cli::add_render_command(program),
-                            pcbmesh::cli::add_check_command(program), pcbmesh::cli::add_formats_command(program),
+  const std::array commands{pcbmesh::cli::add_mesh_command(program),      pcbmesh::cli::add_init_command(program),
+                            pcbmesh::cli::add_ports_command(program),     pcbmesh::cli::add_inspect_command(program),
+                            pcbmesh::cli::add_view_command(program),      pcbmesh::cli::add_render_command(program),
+                            pcbmesh::cli::add_check_command(program),     pcbmesh::cli::add_formats_command(program),
                             pcbmesh::cli::add_touchstone_command(program)};
   try {
     program.parse(argc, argv);
