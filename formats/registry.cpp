@@ -8,13 +8,19 @@
 #include <string>
 #include <vector>
 
+#include "formats/abaqus/format.hpp"
 #include "formats/balance/face_balance.hpp"
 #include "formats/deck/one_number_space.hpp"
+#include "formats/elmer/format.hpp"
+#include "formats/exodus/format.hpp"
 #include "formats/kicad/format.hpp"
+#include "formats/mfem/format.hpp"
 #include "formats/msh/format.hpp"
+#include "formats/nastran/format.hpp"
 #include "formats/native_json/format.hpp"
 #include "formats/native_mesh/format.hpp"
 #include "formats/syntax/input_file.hpp"
+#include "formats/unv/format.hpp"
 #include "formats/vtkhdf/format.hpp"
 #include "formats/vtu/format.hpp"
 #include "formats/xdmf/format.hpp"
@@ -26,9 +32,10 @@ namespace {
 
 // The tables: a new format is one include above and one line here.
 constexpr std::array<const BoardFormat*, 2> board_table{&native_json::board_format, &kicad::board_format};
-constexpr std::array<const MeshFormat*, 7> mesh_table{&msh::mesh_format,        &vtu::mesh_format,  &vtu::parallel_format,
-                                                      &vtu::multiblock_format,  &xdmf::mesh_format, &vtkhdf::mesh_format,
-                                                      &native_mesh::mesh_format};
+constexpr std::array<const MeshFormat*, 13> mesh_table{
+    &msh::mesh_format,    &vtu::mesh_format,         &vtu::parallel_format, &vtu::multiblock_format, &xdmf::mesh_format,
+    &vtkhdf::mesh_format, &native_mesh::mesh_format, &mfem::mesh_format,    &elmer::mesh_format,     &exodus::mesh_format,
+    &abaqus::mesh_format, &nastran::mesh_format,     &unv::mesh_format};
 
 constexpr std::size_t head_bytes = 4096;
 
@@ -117,6 +124,28 @@ std::string names_with(auto ability) {
   return out;
 }
 
+/// Cells that the format has no word for are refused before the first byte. Faces may be left out: the table of formats says
+/// so.
+void require_kinds(const mesh::MeshSource& source, const MeshFormat& format, const std::filesystem::path& file) {
+  if (format.scope.written == 0) return;
+  for (const mesh::ElementBlock& block : source.blocks()) {
+    if (mesh::dimension_of(block.kind) < 3 || holds(format.scope.written, block.kind)) continue;
+    std::string known;
+    for (int i = 0; i <= static_cast<int>(mesh::ElementKind::wedge18); ++i)
+      if (const auto kind = static_cast<mesh::ElementKind>(i);
+          mesh::dimension_of(kind) == 3 && holds(format.scope.written, kind))
+        known += fmt::format("{}{}", known.empty() ? "" : ", ", mesh::name_of(kind));
+    throw Error(ErrorCode::format_limit,
+                fmt::format("the mesh has {} cells of kind {}, which {} does not hold; it holds {}{}", block.count,
+                            mesh::name_of(block.kind), format.name, known,
+                            block.kind == mesh::ElementKind::wedge18 && holds(format.scope.written, mesh::ElementKind::wedge15)
+                                ? ". Give --wedge15"
+                            : mesh::order_of(block.kind) == 2 ? ". Write the mesh with order 1, or second order as .msh"
+                                                              : ""),
+                {.file = file.string()});
+  }
+}
+
 }  // namespace
 
 std::span<const BoardFormat* const> board_formats() {
@@ -159,6 +188,7 @@ void write_mesh(mesh::MeshSource& source, const std::filesystem::path& file, con
     throw Error(ErrorCode::usage,
                 fmt::format("{} is not written, only read; these are: {}", chosen.name, names_with(&MeshFormat::write)),
                 {.file = file.string()});
+  require_kinds(source, chosen, file);
   // Only our own prisms promise a tagged hull; a mesh from elsewhere is written as it is, holes and all.
   FaceBalance balance(source);
   mesh::MeshSource& watched = source.prisms() != nullptr ? balance : source;

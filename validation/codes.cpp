@@ -31,7 +31,7 @@ constexpr CheckCode table[] = {
      "remove the element, or use the kind with fewer corners"},
     {"face.corner_repeated", FindingSeverity::error, "Arrays", "one node stands at two corners: the element is degenerate",
      "remove the element, or use the kind with fewer corners"},
-    {"node.orphan", FindingSeverity::error, "Nodes", "a node is a corner of no cell: a solver's matrix gets an empty row",
+    {"node.orphan", FindingSeverity::error, "Nodes", "a node belongs to no cell: a solver's matrix gets an empty row",
      "drop unused nodes when writing"},
     {"node.duplicate", FindingSeverity::error, "Nodes",
      "a node has exactly the coordinates of an earlier one: usually a crack (see boundary.crack)", "merge the nodes"},

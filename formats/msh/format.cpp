@@ -29,6 +29,9 @@ void write(mesh::MeshSource& source, const std::filesystem::path& file, const Wr
 
 }  // namespace
 
-constinit const MeshFormat mesh_format{"msh", "Gmsh mesh, versions 4.1 and 2.2", extensions, write, read_msh};
+constinit const MeshFormat mesh_format{
+    "msh",      "Gmsh mesh, versions 4.1 and 2.2",
+    extensions, write,
+    read_msh,   {.written = all_kinds, .readable = all_kinds, .has_tags = true, .has_names = true}};
 
 }  // namespace pcbmesh::formats::msh

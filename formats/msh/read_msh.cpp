@@ -15,13 +15,48 @@
 #include <utility>
 #include <vector>
 
-#include "formats/msh/byte_source.hpp"
-#include "formats/msh/mesh_builder.hpp"
+#include "formats/mesh_builder/mesh_builder.hpp"
+#include "formats/syntax/byte_source.hpp"
 
 namespace pcbmesh::formats::msh {
 namespace {
 
+using mesh::ElementKind;
+using syntax::ByteSource;
+using syntax::Numbers;
+
 constexpr std::int64_t items_per_report = 1 << 16;
+constexpr std::size_t most_nodes = 18;
+
+/// What a type number of the format means. Points and lines have no kind: they are counted alone.
+struct ElementType {
+  std::int32_t number = 0;
+  int dimension = 0;
+  int num_nodes = 0;
+  std::optional<ElementKind> kind{};
+};
+
+constexpr ElementType solid(std::int32_t number, ElementKind kind) {
+  return {number, mesh::dimension_of(kind), mesh::nodes_of(kind), kind};
+}
+
+constexpr std::array element_types{
+    ElementType{15, 0, 1},
+    ElementType{1, 1, 2},
+    ElementType{8, 1, 3},
+    solid(2, ElementKind::triangle),
+    solid(3, ElementKind::quadrangle),
+    solid(4, ElementKind::tetrahedron),
+    solid(5, ElementKind::hexahedron),
+    solid(6, ElementKind::wedge),
+    solid(7, ElementKind::pyramid),
+    solid(9, ElementKind::triangle6),
+    solid(10, ElementKind::quadrangle9),
+    solid(11, ElementKind::tetrahedron10),
+    solid(13, ElementKind::wedge18),
+    solid(16, ElementKind::quadrangle8),
+    solid(18, ElementKind::wedge15),
+};
 
 class Reader {
  public:
@@ -42,6 +77,11 @@ class Reader {
   void read_elements_22();
   void read_elements_41();
   std::int64_t read_element_block_41(std::int64_t most);
+  [[nodiscard]] ElementType type_of(std::int32_t number) const;
+  void add_element(const ElementType& type, std::int64_t number, std::int32_t tag, std::span<const std::int64_t> nodes) {
+    type.kind ? builder_.add_element(*type.kind, number, tag, nodes) : builder_.add_other(type.dimension, tag);
+    tick();
+  }
   [[nodiscard]] std::int32_t tag_of_entity(std::int32_t dimension, std::int32_t tag) const;
   void end_section(std::string_view name);
   void tick() {
@@ -104,6 +144,16 @@ mesh::MeshData Reader::read(std::string source_name) {
 void Reader::end_section(std::string_view name) {
   const std::string expected = "$End" + std::string(name.substr(1));
   if (source_.word() != expected) source_.fail(fmt::format("{} was expected here; a count above it is wrong", expected));
+}
+
+ElementType Reader::type_of(std::int32_t number) const {
+  const auto found = std::ranges::find(element_types, number, &ElementType::number);
+  if (found != element_types.end()) return *found;
+  if (number < 8 || number > 140) source_.fail(fmt::format("there is no element type {}", number));
+  source_.fail(
+      fmt::format("element type {} is not read; of second order these are: triangles of 6 nodes, quadrangles of 8 or 9, "
+                  "tetrahedra of 10, prisms of 15 or 18. Write the mesh with order 1 or as one of these",
+                  number));
 }
 
 void Reader::read_format() {
@@ -230,35 +280,34 @@ void Reader::read_elements_22() {
 }
 
 void Reader::read_elements_22_text(std::int64_t count) {
-  std::array<std::int64_t, 8> nodes{};
+  std::array<std::int64_t, most_nodes> nodes{};
   for (std::int64_t i = 0; i < count; ++i) {
     const std::int64_t number = numbers_.size();
-    const std::int32_t type = numbers_.integer();
-    const ElementType kind = builder_.type_of(type);
+    const ElementType type = type_of(numbers_.integer());
     const std::int64_t num_tags = numbers_.count(4, 2, "tags of an element");
     std::int32_t tag = 0;
     for (std::int64_t j = 0; j < num_tags; ++j) {
       const std::int32_t one = numbers_.integer();
       if (j == 0) tag = one;
     }
-    const auto corners = std::span(nodes).first(static_cast<std::size_t>(kind.num_nodes));
+    const auto corners = std::span(nodes).first(static_cast<std::size_t>(type.num_nodes));
     for (std::int64_t& node : corners) node = numbers_.size();
-    builder_.add_element(type, number, tag, corners);
-    tick();
+    add_element(type, number, tag, corners);
   }
 }
 
 void Reader::read_elements_22_binary(std::int64_t count) {
-  std::array<std::int64_t, 8> nodes{};
+  std::array<std::int64_t, most_nodes> nodes{};
   for (std::int64_t done = 0; done < count;) {
-    const std::int32_t type = numbers_.integer(), block = numbers_.integer(), num_tags = numbers_.integer();
-    const ElementType kind = builder_.type_of(type);
+    const ElementType type = type_of(numbers_.integer());
+    const std::int32_t block = numbers_.integer(), num_tags = numbers_.integer();
     if (block <= 0 || block > count - done)
       source_.fail(fmt::format("a block announces {} elements where {} are left", block, count - done));
     if (num_tags < 0) source_.fail(fmt::format("elements with {} tags", num_tags));
-    const std::int64_t row = 4 * (std::int64_t{1} + num_tags + kind.num_nodes);
-    builder_.reserve(type, numbers_.justified(block, row, row, "elements of a block"));
-    const auto corners = std::span(nodes).first(static_cast<std::size_t>(kind.num_nodes));
+    const std::int64_t row = 4 * (std::int64_t{1} + num_tags + type.num_nodes);
+    static_cast<void>(numbers_.justified(block, row, row, "elements of a block"));
+    if (type.kind) builder_.reserve(*type.kind, block);
+    const auto corners = std::span(nodes).first(static_cast<std::size_t>(type.num_nodes));
     for (std::int32_t i = 0; i < block; ++i) {
       const std::int32_t number = numbers_.integer();
       std::int32_t tag = 0;
@@ -267,8 +316,7 @@ void Reader::read_elements_22_binary(std::int64_t count) {
         if (j == 0) tag = one;
       }
       for (std::int64_t& node : corners) node = numbers_.integer();
-      builder_.add_element(type, number, tag, corners);
-      tick();
+      add_element(type, number, tag, corners);
     }
     done += block;
   }
@@ -286,21 +334,20 @@ void Reader::read_elements_41() {
 }
 
 std::int64_t Reader::read_element_block_41(std::int64_t most) {
-  const std::int32_t dimension = numbers_.integer(), entity = numbers_.integer(), type = numbers_.integer();
-  const ElementType kind = builder_.type_of(type);
-  if (kind.dimension != dimension)
-    source_.fail(fmt::format("elements of type {} stand in a block of dimension {}", type, dimension));
+  const std::int32_t dimension = numbers_.integer(), entity = numbers_.integer();
+  const ElementType type = type_of(numbers_.integer());
+  if (type.dimension != dimension)
+    source_.fail(fmt::format("elements of type {} stand in a block of dimension {}", type.number, dimension));
   const std::int32_t tag = tag_of_entity(dimension, entity);
-  const std::int64_t count = numbers_.count(8 * (1 + kind.num_nodes), 2 * (1 + kind.num_nodes), "elements of a block");
+  const std::int64_t count = numbers_.count(8 * (1 + type.num_nodes), 2 * (1 + type.num_nodes), "elements of a block");
   if (count > most) source_.fail(fmt::format("a block announces {} elements where {} are left", count, most));
-  builder_.reserve(type, count);
-  std::array<std::int64_t, 8> nodes{};
-  const auto corners = std::span(nodes).first(static_cast<std::size_t>(kind.num_nodes));
+  if (type.kind) builder_.reserve(*type.kind, count);
+  std::array<std::int64_t, most_nodes> nodes{};
+  const auto corners = std::span(nodes).first(static_cast<std::size_t>(type.num_nodes));
   for (std::int64_t i = 0; i < count; ++i) {
     const std::int64_t number = numbers_.size();
     for (std::int64_t& node : corners) node = numbers_.size();
-    builder_.add_element(type, number, tag, corners);
-    tick();
+    add_element(type, number, tag, corners);
   }
   return count;
 }

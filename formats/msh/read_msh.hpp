@@ -11,7 +11,7 @@ namespace pcbmesh::formats::msh {
 /// Reads MSH 2.2 (2.0 to 2.2) and 4.1, text and binary of either byte order, also packed as .gz or .xz.
 ///
 /// Corners are indices into `nodes`, whatever numbers the file gives its nodes. An element's tag is its physical group,
-/// in 4.1 the first one of its entity; 0 if it has none. Cells and faces come as one block per kind, in file order;
+/// in 4.1 the first one of its entity; 0 if it has none. Cells and faces come as one block per kind and order, in file order;
 /// faces without a physical group are left out like points and lines, which are counted.
 /// Shares no code with the writer, so that reading back proves something.
 ///

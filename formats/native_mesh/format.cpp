@@ -12,7 +12,15 @@ constexpr std::array<std::string_view, 1> extensions{".pcbmesh"};
 
 }  // namespace
 
-constinit const MeshFormat mesh_format{"native", "pcbmesh's own implicit mesh, 1 to 2 bytes per prism", extensions,
-                                       write_native, read_native};
+constinit const MeshFormat mesh_format{
+    "native",
+    "pcbmesh's own implicit mesh, 1 to 2 bytes per prism",
+    extensions,
+    write_native,
+    read_native,
+    {.written = kind_set(mesh::ElementKind::wedge, mesh::ElementKind::triangle, mesh::ElementKind::quadrangle),
+     .readable = kind_set(mesh::ElementKind::wedge, mesh::ElementKind::triangle, mesh::ElementKind::quadrangle),
+     .has_tags = true,
+     .has_names = true}};
 
 }  // namespace pcbmesh::formats::native_mesh

@@ -199,7 +199,8 @@ Json bounding_box(const mesh::PrismMesh& mesh) {
 
 }  // namespace
 
-void write_tags(const mesh::PrismMesh& mesh, const std::filesystem::path& file, LengthUnit unit, std::int32_t first_face_id) {
+void write_tags(const mesh::PrismMesh& mesh, const std::filesystem::path& file, LengthUnit unit, std::int32_t first_face_id,
+                const mesh::MeshSource* written) {
   Json out;
   out["schema_version"] = schema_version;
   out["unit_m"] = metres_per(unit);
@@ -207,6 +208,11 @@ void write_tags(const mesh::PrismMesh& mesh, const std::filesystem::path& file, 
   out["layers"] = layers(mesh);
   out["volumes"] = volumes(mesh);
   out["faces"] = faces(mesh, first_face_id);
+  if (written != nullptr)
+    for (const mesh::ElementGroup& group : written->groups())
+      for (Json& entry : out[group.dimension == 3 ? "volumes" : "faces"])
+        if (entry["id"] == group.tag + (group.dimension == 2 ? first_face_id : 0))
+          entry[group.dimension == 3 ? "num_cells" : "num_faces"] = group.num_elements;
   out["ports"] = ports(mesh);
   out["materials"] = materials(mesh);
   out["nets"] = nets(mesh);

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "pcbmesh/base/units.hpp"
+#include "pcbmesh/mesh/mesh_source.hpp"
 #include "pcbmesh/mesh/prism_mesh.hpp"
 
 namespace pcbmesh::formats::tags_json {
@@ -17,8 +18,10 @@ inline constexpr double conductor_sigma_s_per_m = 1e3;
 /// Nets are listed if they have copper cells, skins or sheets; pieces null = not known.
 /// @param unit  of the mesh file.
 /// @param first_face_id  added to the ids of face groups, as in a mesh file of one number space.
+/// @param written  what the mesh file holds if that is not the mesh's prisms: numbers of elements are taken from it. Sizes stay
+///                those of the prisms with straight edges.
 /// @throws Error write_failed (701); the file appears whole or not at all.
-void write_tags(const mesh::PrismMesh& mesh, const std::filesystem::path& file, LengthUnit unit,
-                std::int32_t first_face_id = 0);
+void write_tags(const mesh::PrismMesh& mesh, const std::filesystem::path& file, LengthUnit unit, std::int32_t first_face_id = 0,
+                const mesh::MeshSource* written = nullptr);
 
 }  // namespace pcbmesh::formats::tags_json

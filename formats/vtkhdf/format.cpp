@@ -18,7 +18,9 @@ void write(mesh::MeshSource& source, const std::filesystem::path& file, const Wr
 
 }  // namespace
 
-constinit const MeshFormat mesh_format{"vtkhdf", "VTKHDF unstructured grid, also heavy data of XDMF", extensions, write,
-                                       read_vtkhdf};
+constinit const MeshFormat mesh_format{
+    "vtkhdf",    "VTKHDF unstructured grid, also heavy data of XDMF",
+    extensions,  write,
+    read_vtkhdf, {.written = all_kinds, .readable = all_kinds, .has_tags = true, .has_names = true}};
 
 }  // namespace pcbmesh::formats::vtkhdf

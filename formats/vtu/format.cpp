@@ -25,10 +25,21 @@ void write(mesh::MeshSource& source, const std::filesystem::path& file, const Wr
 
 }  // namespace
 
-constinit const MeshFormat mesh_format{"vtu", "VTK unstructured grid (ParaView)", extensions, write, read_vtu};
-constinit const MeshFormat parallel_format{"pvtu", "VTK unstructured grid in parts", parallel_extensions, write_parallel,
-                                           nullptr};
-constinit const MeshFormat multiblock_format{"vtm", "VTK multiblock: one named block for each group", multiblock_extensions,
-                                             write_multiblock, nullptr};
+constinit const MeshFormat mesh_format{
+    "vtu",      "VTK unstructured grid (ParaView)",
+    extensions, write,
+    read_vtu,   {.written = all_kinds, .readable = all_kinds, .has_tags = true, .has_names = true}};
+constinit const MeshFormat parallel_format{"pvtu",
+                                           "VTK unstructured grid in parts",
+                                           parallel_extensions,
+                                           write_parallel,
+                                           nullptr,
+                                           {.written = all_kinds, .readable = 0, .has_tags = true, .has_names = true}};
+constinit const MeshFormat multiblock_format{"vtm",
+                                             "VTK multiblock: one named block for each group",
+                                             multiblock_extensions,
+                                             write_multiblock,
+                                             nullptr,
+                                             {.written = all_kinds, .readable = 0, .has_tags = true, .has_names = true}};
 
 }  // namespace pcbmesh::formats::vtu

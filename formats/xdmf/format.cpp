@@ -106,6 +106,9 @@ void write(mesh::MeshSource& source, const std::filesystem::path& file, const Wr
 
 }  // namespace
 
-constinit const MeshFormat mesh_format{"xdmf", "XDMF 3 over HDF5 (dolfinx, meshio, ParaView)", extensions, write, read_xdmf};
+constinit const MeshFormat mesh_format{
+    "xdmf",     "XDMF 3 over HDF5 (dolfinx, meshio, ParaView)",
+    extensions, write,
+    read_xdmf,  {.written = all_kinds, .readable = all_kinds, .has_tags = true, .has_names = true}};
 
 }  // namespace pcbmesh::formats::xdmf

@@ -140,7 +140,7 @@ Command add_check_command(CLI::App& program) {
   CLI::App* command =
       program.add_subcommand("check", "Judge a mesh: conformity, volumes, tags, nets; exit code 1 with findings");
   auto options = std::make_shared<Options>();
-  command->add_option("mesh", options->mesh, "Mesh file (.msh)");
+  command->add_option("mesh", options->mesh, "Mesh file (.msh, .mesh; .gz and .xz are unpacked)");
   command->add_option("--tags", options->tags, "tags.json to check against (default: the one beside the mesh)");
   command->add_option("--netlist", options->netlist, "Judge nets by the tags.json of another mesh of the same layout")
       ->check(CLI::ExistingFile);

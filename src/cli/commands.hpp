@@ -20,6 +20,7 @@ struct Command {
 [[nodiscard]] Command add_render_command(CLI::App& program);
 [[nodiscard]] Command add_view_command(CLI::App& program);
 [[nodiscard]] Command add_check_command(CLI::App& program);
+[[nodiscard]] Command add_convert_command(CLI::App& program);
 [[nodiscard]] Command add_formats_command(CLI::App& program);
 [[nodiscard]] Command add_touchstone_command(CLI::App& program);
 

@@ -24,7 +24,8 @@ constexpr const char* about =
     "  pcbmesh mesh board.kicad_pcb --nets /USB_P,/USB_N --margin 2mm --frequency 10GHz -o usb.msh\n"
     "  pcbmesh view board.kicad_pcb -o board.html          the mesh to look at, in any browser\n"
     "  pcbmesh render board.kicad_pcb -o board.png         a picture\n"
-    "  pcbmesh check board.msh                             judge any mesh\n\n"
+    "  pcbmesh check board.msh                             judge any mesh\n"
+    "  pcbmesh convert board.msh board.exo                 any mesh into another format\n\n"
     "Exit codes: 0 fine, 1 findings, 2 usage, 3 input, 4 cannot mesh, 5 output, 70 bug, 130 cancelled.";
 
 int run(int argc, char** argv) {
@@ -32,11 +33,11 @@ int run(int argc, char** argv) {
   program.set_version_flag("--version", std::string("pcbmesh ") + std::string(pcbmesh::version()));
   program.require_subcommand(1);
   program.get_formatter()->column_width(34);
-  const std::array commands{pcbmesh::cli::add_mesh_command(program),  pcbmesh::cli::add_init_command(program),
-                            pcbmesh::cli::add_ports_command(program), pcbmesh::cli::add_inspect_command(program),
-                            pcbmesh::cli::add_view_command(program),  pcbmesh::cli::add_render_command(program),
-                            pcbmesh::cli::add_check_command(program), pcbmesh::cli::add_formats_command(program),
-                            pcbmesh::cli::add_touchstone_command(program)};
+  const std::array commands{pcbmesh::cli::add_mesh_command(program),       pcbmesh::cli::add_init_command(program),
+                            pcbmesh::cli::add_ports_command(program),      pcbmesh::cli::add_inspect_command(program),
+                            pcbmesh::cli::add_view_command(program),       pcbmesh::cli::add_render_command(program),
+                            pcbmesh::cli::add_check_command(program),      pcbmesh::cli::add_formats_command(program),
+                            pcbmesh::cli::add_touchstone_command(program), pcbmesh::cli::add_convert_command(program)};
   try {
     program.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -27,7 +27,7 @@ namespace pcbmesh::cli {
 namespace {
 
 struct Options {
-  std::string board, from, to, msh_version, html, compression = "none", vtk_wedge = "legacy";
+  std::string board, from, to, msh_version, mfem_version, html, compression = "none", vtk_wedge = "legacy";
   std::vector<std::string> outputs;
   bool ascii = false, base64 = false, faces = false, no_check = false, json = false, dry_run = false, forecast = false,
        quality = false, explain = false, quiet = false, warnings_as_errors = false;
@@ -48,6 +48,7 @@ pipeline::OutputOptions output_options(const Options& options, LengthUnit unit) 
   write.compression = options.compression == "zlib"  ? formats::Compression::zlib
                       : options.compression == "lz4" ? formats::Compression::lz4
                                                      : formats::Compression::none;
+  write.mfem_version = options.mfem_version;
   write.base64 = options.base64;
   write.vtk_wedge = options.vtk_wedge == "parametric" ? formats::VtkWedge::parametric : formats::VtkWedge::legacy;
   write.faces = options.faces;
@@ -87,6 +88,7 @@ int run(const Options& options) {
   if (!options.dry_run) {
     require_solver_deck(result, output.meshes.front());
     written = pipeline::write_outputs(result, output, progress);
+    mesh_run.second_order = written.second_order;
     if (written.report) {
       const bool is_file = std::ranges::any_of(
           output.meshes, [&](const auto& file) { return formats::find_mesh_format(file, output.format)->read != nullptr; });
@@ -138,6 +140,9 @@ Command add_mesh_command(CLI::App& program) {
   command->add_flag("--ascii", options->ascii, "Text instead of binary, where the format has both")->group(output);
   command->add_option("--msh-version", options->msh_version, "Gmsh format: 4.1 (default) or 2.2 (GetDP, Palace, Elmer)")
       ->check(CLI::IsMember({"4.1", "2.2"}))
+      ->group(output);
+  command->add_option("--mfem-version", options->mfem_version, "MFEM format: 1.3 (default, named sets) or 1.0")
+      ->check(CLI::IsMember({"1.3", "1.0"}))
       ->group(output);
   command->add_option("--compress", options->compression, "VTK and HDF5 files: none (default), zlib or, for VTU, lz4")
       ->check(CLI::IsMember({"none", "zlib", "lz4"}))

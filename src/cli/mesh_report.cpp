@@ -44,6 +44,18 @@ Json ledger_json(const std::vector<overlay::SnapRecord>& ledger) {
   return out;
 }
 
+/// Size of a file, or of all files of a folder.
+double megabytes_of(const std::filesystem::path& file) {
+  std::error_code ignored;
+  std::uintmax_t bytes = 0;
+  if (std::filesystem::is_directory(file, ignored)) {
+    for (const auto& entry : std::filesystem::directory_iterator(file, ignored)) bytes += entry.file_size(ignored);
+  } else {
+    bytes = std::filesystem::file_size(file, ignored);
+  }
+  return static_cast<double>(bytes) * 1e-6;
+}
+
 }  // namespace
 
 std::string report_json(const MeshRun& run) {
@@ -113,6 +125,10 @@ std::string report_json(const MeshRun& run) {
            {"diagnostics", diagnostics_json(r.diagnostics)},
            {"check", run.check == nullptr ? Json(nullptr) : Json::parse(validation::to_json(*run.check))},
            {"files", run.files}};
+  if (run.second_order)
+    out["second_order"] = {{"curved_edges", run.second_order->num_curved_edges},
+                           {"straightened_edges", run.second_order->num_straightened_edges},
+                           {"folded_triangles", run.second_order->num_folded_triangles}};
   return out.dump(2);
 }
 
@@ -136,6 +152,11 @@ std::string report_text(const MeshRun& run) {
   out +=
       line("quality", fmt::format("triangles {:.4f}, prisms {:.4f} (by volume {:.4f}, worst {:.4f})", r.quality.mean_triangle,
                                   r.quality.mean_prism, r.quality.volume_weighted_prism, r.quality.min_prism));
+  if (run.second_order)
+    out += line("order 2",
+                fmt::format("{} chords of the plane lie on their arcs; {} stay straight, because {} triangles would fold",
+                            grouped(run.second_order->num_curved_edges), grouped(run.second_order->num_straightened_edges),
+                            grouped(run.second_order->num_folded_triangles)));
   double total = 0;
   for (const pipeline::StepTime& t : r.times) total += t.cpu_s;
   out += line("effort", fmt::format("{:.2f} s CPU to mesh, peak memory {:.0f} MiB", total, peak_memory_mib()));
@@ -158,11 +179,7 @@ std::string report_text(const MeshRun& run) {
       out += fmt::format("    {} [{}] {}\n", f.severity == validation::FindingSeverity::error ? "error" : "warning", f.code,
                          f.text);
   }
-  for (const std::string& file : run.files) {
-    std::error_code ignored;
-    out += line("wrote",
-                fmt::format("{} ({:.1f} MB)", file, static_cast<double>(std::filesystem::file_size(file, ignored)) * 1e-6));
-  }
+  for (const std::string& file : run.files) out += line("wrote", fmt::format("{} ({:.1f} MB)", file, megabytes_of(file)));
   return out;
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pcbmesh/board/board.hpp"
+#include "pcbmesh/extrude/second_order_source.hpp"
 #include "pcbmesh/layering/divide_layers.hpp"
 #include "pcbmesh/layering/quality_report.hpp"
 #include "pcbmesh/pipeline/mesh_board.hpp"
@@ -22,6 +23,7 @@ struct MeshRun {
   const validation::Report* check = nullptr;       ///< null: not checked
   std::vector<std::string> files;                  ///< written, in order
   std::optional<pipeline::Forecast> measured{};    ///< exact sizes
+  std::optional<extrude::SecondOrderStatistics> second_order{};
 };
 
 /// JSON for machines: x.report.json and --json. @unit as the keys say.

@@ -98,6 +98,12 @@ std::shared_ptr<StudyOptions> add_study_options(CLI::App& command) {
   command.add_option("--tolerance", o->tolerance, "Snapping tolerance: auto or a length (default auto)")->group(sizes);
   command.add_option("--arc-sagitta", o->arc_sagitta, "Largest distance of chord and arc (default 5um)")->group(sizes);
   command.add_option("--unit", o->unit, "Unit written to the mesh: m (default), mm, um")->group(sizes);
+  command.add_option("--split", o->split, "Write tets: three tetrahedra per prism, same nodes and tags")->group(sizes);
+  command.add_option("--order", o->order, "Order of the elements, 1 (default) or 2: arcs of the layout become curved")
+      ->group(sizes);
+  CLI::Option* wedge15 =
+      command.add_flag("--wedge15", o->wedge15, "Order 2: prisms of 15 nodes (CalculiX, Elmer, Nastran)")->group(sizes);
+  command.add_flag("--wedge18", o->wedge18, "Order 2: prisms of 18 nodes (default)")->excludes(wedge15)->group(sizes);
   command.add_option("--max-prisms", o->max_prisms, "Refuse a mesh larger than this (default 2e8)")->group(sizes);
   return o;
 }
@@ -149,6 +155,9 @@ study::Study study_from(const StudyOptions& o) {
     s.tolerance = parse_length(o.tolerance);
   if (!o.arc_sagitta.empty()) s.arcs.sagitta_nm = parse_length(o.arc_sagitta);
   if (!o.unit.empty()) s.unit = parse_length_unit(o.unit);
+  if (!o.split.empty()) s.split = study::parse_element_split(o.split);
+  if (o.order != 0) s.order = o.order;
+  if (o.wedge15 || o.wedge18) s.wedge_nodes = o.wedge15 ? 15 : 18;
   if (o.max_prisms != 0) s.max_prisms = count("--max-prisms", o.max_prisms);
   take_fabrication_options(*o.fabrication, s.fabrication);
   take_physics_options(o, s);

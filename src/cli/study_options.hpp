@@ -15,9 +15,11 @@ namespace pcbmesh::cli {
 /// The flags of a study, as typed. A study file comes first; flags override its fields.
 struct StudyOptions {
   std::string file, nets, margin, region, conductors, air, air_above, air_below, air_around, frequency, longest_edge,
-      edge_at_copper, seed, policy, sublayers, tolerance, arc_sagitta, unit, problem, solver, sweep;
+      edge_at_copper, seed, policy, sublayers, tolerance, arc_sagitta, unit, split, problem, solver, sweep;
   std::vector<std::string> hollow, solid, sheet, ports, boundaries;
   bool smooth = false, paper_compat = false;
+  bool wedge15 = false, wedge18 = false;
+  int order = 0;
   double min_angle = 0, growth = 0, max_prisms = 0;
   std::optional<double> elements_per_wavelength, height_growth, target_quality, budget_prisms, budget_unknowns;
   std::optional<int> elements_per_dielectric, skin_depth_layers;

@@ -186,6 +186,22 @@ void add_copper(const Board& board, const study::Study& study, const std::vector
       if (slice.inset > 0) keep_open(parts, 4 * slice.inset);
 }
 
+void add_circles(const Board& board, const study::Study& study, const Footprint& footprint, ModelParts& parts) {
+  if (study.arcs.mode != geometry::ArcMode::inscribed) return;
+  std::vector<geometry::OutlineCircle>& circles = parts.circles;
+  const auto add = [&](const geometry::Figure& figure) {
+    if (geometry::bounds(figure).touches(footprint.box)) geometry::append_circles(figure, circles);
+  };
+  for (const board::Shape& shape : board.shapes()) add(shape.figure);
+  for (const board::Drill& drill : board.drills()) add(drill.figure);
+  for (const board::Outline& outline : board.outlines()) {
+    add({outline.outer, 0, true});
+    for (const geometry::Path& cutout : outline.cutouts) add({cutout, 0, true});
+  }
+  std::sort(circles.begin(), circles.end());
+  circles.erase(std::unique(circles.begin(), circles.end()), circles.end());
+}
+
 void measure_narrowest(const Board& board, const Footprint& footprint, ModelParts& parts) {
   std::vector<char> of_interest(board.nets().size(), 0);
   for (std::int32_t net : parts.nets_of_interest) of_interest[static_cast<std::size_t>(net)] = 1;

@@ -58,4 +58,8 @@ void add_copper(const board::Board& board, const study::Study& study, const std:
 /// Smallest track width, pad width and hole diameter in the domain, and the same among parts.nets_of_interest.
 void measure_narrowest(const board::Board& board, const Footprint& footprint, model::ModelParts& parts);
 
+/// Circles of everything drawn inside the footprint, for elements of second order. None unless arcs are inscribed: only then do
+/// the corners of chords lie on them.
+void add_circles(const board::Board& board, const study::Study& study, const Footprint& footprint, model::ModelParts& parts);
+
 }  // namespace pcbmesh::compose

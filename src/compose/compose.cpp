@@ -229,6 +229,7 @@ model::Model compose(const Board& board, const Study& study, Diagnostics& diagno
   add_holes(board, study, names.rules, names.holes, footprint, stack, parts, diagnostics);
   add_mask(board, study, footprint, stack, parts, diagnostics);
   if (study.paper_compat) keep_every_outline(parts);
+  if (study.order == 2) add_circles(board, study, footprint, parts);
   std::vector<study::Fault> faults;
   add_ports(board, study, names.rules, footprint, stack, parts, faults);
   if (!names.unknown.empty() || !faults.empty()) {

@@ -252,6 +252,26 @@ Box bounds(const Figure& figure) {
   return box.is_empty() ? box : box.grown((figure.pen + 1) / 2 + (figure.path.arc_starts.empty() ? 0 : slack));
 }
 
+void append_circles(const Figure& figure, std::vector<OutlineCircle>& circles) {
+  const Path& path = figure.path;
+  const std::size_t n = path.points.size();
+  const double half = static_cast<double>(figure.pen) / 2;
+  std::vector<char> is_corner(n, 1);
+  for (const std::int32_t start : path.arc_starts) {
+    const auto i = static_cast<std::size_t>(start);
+    if (!path.closed && i + 2 >= n) continue;
+    is_corner[(i + 1) % n] = 0;
+    const std::optional<Circle> circle = circle_through(path.points[i], path.points[(i + 1) % n], path.points[(i + 2) % n]);
+    if (!circle) continue;
+    circles.push_back({circle->x, circle->y, circle->r + half});
+    if (half > 0 && circle->r > half) circles.push_back({circle->x, circle->y, circle->r - half});
+  }
+  if (half <= 0) return;
+  for (std::size_t i = 0; i < n; ++i)
+    if (is_corner[i] != 0)
+      circles.push_back({static_cast<double>(path.points[i].x), static_cast<double>(path.points[i].y), half});
+}
+
 Figure disc(Point centre, Nm diameter) {
   return {Path{{centre}, {}, false}, diameter, false};
 }

@@ -32,6 +32,7 @@ Nm first_tolerance(const model::Model& model, const OverlayOptions& options) {
   Nm tolerance = some_nets ? 5 * nm_per_um : 20 * nm_per_um;
   if (some_nets && model.narrowest_of_interest_nm() > 0) tolerance = std::min(tolerance, model.narrowest_of_interest_nm() / 20);
   if (model.narrowest_feature_nm() > 0) tolerance = std::min(tolerance, model.narrowest_feature_nm() / 8);
+  if (options.coarsest_auto_nm) tolerance = std::min(tolerance, *options.coarsest_auto_nm);
   return std::max(tolerance, least_tolerance);
 }
 

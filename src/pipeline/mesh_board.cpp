@@ -94,6 +94,8 @@ MeshBoardResult mesh_board(const board::Board& board, const study::Study& given,
 
   overlay::OverlayOptions overlay_options;
   overlay_options.tolerance_nm = study.tolerance;
+  // Simplification by more than a sagitta moves the corners of chords off their arcs, which second order needs.
+  if (study.order == 2) overlay_options.coarsest_auto_nm = study.arcs.sagitta_nm;
   overlay::OverlayResult graph =
       timed("overlay", [&] { return overlay::overlay(model, overlay_options, diagnostics, progress); });
   // Not the tolerance that held in the end: a run that starts there would take other ways, and the resolved study repeats this

@@ -8,15 +8,16 @@
 #include "formats/sink/file_sink.hpp"
 #include "formats/tags_json/tags_json.hpp"
 #include "pcbmesh/base/error.hpp"
-#include "pcbmesh/layering/prism_quality.hpp"
+#include "pcbmesh/mesh/mesh_data_source.hpp"
 #include "pcbmesh/mesh/prism_source.hpp"
+#include "pcbmesh/pipeline/element_source.hpp"
 #include "pcbmesh/validation/certificate.hpp"
 
 namespace pcbmesh::pipeline {
 namespace {
 
 /// @param expectation  of tags.json; its unit becomes that of the mesh that was judged.
-validation::Report judge(const MeshBoardResult& result, const OutputOptions& options, validation::Expectation& expectation,
+validation::Report judge(mesh::MeshSource& source, const OutputOptions& options, validation::Expectation& expectation,
                          const Progress& progress) {
   for (const std::filesystem::path& file : options.meshes) {
     if (formats::find_mesh_format(file, options.format)->read == nullptr) continue;
@@ -25,7 +26,7 @@ validation::Report judge(const MeshBoardResult& result, const OutputOptions& opt
   }
   progress.at("check", 0);
   expectation.unit_m = 1.0;
-  return validation::check(expand(result.mesh), &expectation, {options.num_threads});
+  return validation::check(mesh::expand(source), &expectation, {options.num_threads});
 }
 
 }  // namespace
@@ -45,9 +46,9 @@ void require_writable(const OutputOptions& options, const std::filesystem::path&
     if (!std::filesystem::is_directory(absolute.parent_path()))
       throw Error(ErrorCode::write_failed, "the folder does not exist; make it first",
                   {.file = absolute.parent_path().string()});
-    if (std::filesystem::is_directory(file))
-      throw Error(ErrorCode::write_failed, "this is a folder; name a file in it, e.g. board.msh", spot);
     const formats::MeshFormat* format = formats::find_mesh_format(file, options.format);
+    if (std::filesystem::is_directory(file) && (format == nullptr || !format->scope.is_folder))
+      throw Error(ErrorCode::write_failed, "this is a folder; name a file in it, e.g. board.msh", spot);
     if (format == nullptr || format->write == nullptr)
       throw Error(ErrorCode::usage,
                   "no mesh format that pcbmesh writes has this ending; 'pcbmesh formats' lists them, --to NAME picks one",
@@ -80,17 +81,20 @@ OutputResult write_outputs(const MeshBoardResult& result, const OutputOptions& o
                               study = file_beside(options.meshes.front(), ".resolved.json");
   // The contract first: whoever sees the mesh finds its meaning beside it.
   const auto num_volumes = static_cast<std::int32_t>(result.mesh.volume_tags().size());
-  formats::tags_json::write_tags(result.mesh, tags, options.write.unit, options.write.one_number_space ? num_volumes : 0);
+  ElementSource elements(result);
+  out.second_order = elements.second_order();
+  formats::tags_json::write_tags(result.mesh, tags, options.write.unit, options.write.one_number_space ? num_volumes : 0,
+                                 &elements.source());
   write_text_file(study, study::to_json(result.resolved));
   for (const std::filesystem::path& file : options.meshes) {
-    formats::write_mesh(source, file, options.write, options.format, progress);
+    formats::write_mesh(elements.source(), file, options.write, options.format, progress);
     out.files.push_back(file.string());
   }
   out.files.push_back(tags.string());
   out.files.push_back(study.string());
   if (!options.check) return out;
   validation::Expectation expectation = validation::read_expectation(tags.string());
-  out.report = judge(result, options, expectation, progress);
+  out.report = judge(elements.source(), options, expectation, progress);
   std::vector<validation::Certificate::File> certified;
   if (!options.board.empty()) certified.push_back(validation::certified_file("board", options.board));
   certified.push_back(validation::certified_file("study", study));
@@ -104,45 +108,8 @@ OutputResult write_outputs(const MeshBoardResult& result, const OutputOptions& o
 }
 
 mesh::MeshData expand(const mesh::PrismMesh& mesh) {
-  mesh::MeshData out;
-  out.source = "mesh in memory";
-  out.num_other_elements = {0, 0};
-  out.nodes.resize(static_cast<std::size_t>(mesh.num_nodes()));
-  mesh.fill_nodes(0, out.nodes);
-
-  const auto num_prisms = static_cast<std::size_t>(mesh.num_prisms());
-  mesh::CellBlock wedges;
-  wedges.corners.reserve(num_prisms * 6);
-  wedges.tags.reserve(num_prisms);
-  std::vector<std::array<std::int64_t, 6>> corners(1 << 16);
-  std::vector<std::int32_t> tags(corners.size());
-  for (std::size_t first = 0; first < num_prisms; first += corners.size()) {
-    const std::size_t count = std::min(corners.size(), num_prisms - first);
-    mesh.fill_prisms(static_cast<std::int64_t>(first), std::span(corners).first(count), std::span(tags).first(count));
-    for (std::size_t i = 0; i < count; ++i) {
-      wedges.corners.insert(wedges.corners.end(), corners[i].begin(), corners[i].end());
-      wedges.tags.push_back(mesh.volume_tags()[static_cast<std::size_t>(tags[i])].id);
-    }
-  }
-  out.cells.push_back(std::move(wedges));
-
-  mesh::FaceBlock triangles{mesh::FaceKind::triangle, {}, {}}, quads{mesh::FaceKind::quadrangle, {}, {}};
-  for (const mesh::Cap& cap : mesh.caps()) {
-    std::array<std::int32_t, 3> t = mesh.planar().triangles()[static_cast<std::size_t>(cap.triangle)];
-    if (!cap.up) std::swap(t[1], t[2]);
-    for (std::int32_t v : t) triangles.corners.push_back(mesh.node_id(cap.level, v));
-    triangles.tags.push_back(mesh.face_tags()[static_cast<std::size_t>(cap.tag)].id);
-  }
-  for (const mesh::Wall& wall : mesh.walls())
-    for (std::int32_t k = mesh.plan().first_sublayer(wall.slab); k < mesh.plan().first_sublayer(wall.slab + 1); ++k) {
-      for (const auto& [level, v] : {std::pair{k, wall.a}, {k, wall.b}, {k + 1, wall.b}, {k + 1, wall.a}})
-        quads.corners.push_back(mesh.node_id(level, v));
-      quads.tags.push_back(mesh.face_tags()[static_cast<std::size_t>(wall.tag)].id);
-    }
-  out.faces = {std::move(triangles), std::move(quads)};
-  for (const mesh::VolumeTag& tag : mesh.volume_tags()) out.names.push_back({3, tag.id, tag.name});
-  for (const mesh::FaceTag& tag : mesh.face_tags()) out.names.push_back({2, tag.id, tag.name});
-  return out;
+  mesh::PrismSource source(mesh);
+  return mesh::expand(source);
 }
 
 }  // namespace pcbmesh::pipeline

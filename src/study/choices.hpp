@@ -45,6 +45,8 @@ inline constexpr std::array<Choice<SublayerRule>, 6> sublayer_names{{{SublayerRu
                                                                      {SublayerRule::best_mean, "best_mean"}}};
 inline constexpr std::array<Choice<TriangleSeed>, 2> seed_names{
     {{TriangleSeed::delaunay, "delaunay"}, {TriangleSeed::hex, "hex"}}};
+inline constexpr std::array<Choice<ElementSplit>, 2> split_names{
+    {{ElementSplit::none, "none"}, {ElementSplit::tetrahedra, "tets"}}};
 inline constexpr std::array<Choice<geometry::ArcMode>, 4> arc_names{{{geometry::ArcMode::inscribed, "inscribed"},
                                                                      {geometry::ArcMode::circumscribed, "circumscribed"},
                                                                      {geometry::ArcMode::equal_area, "equal_area"},

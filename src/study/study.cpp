@@ -88,6 +88,15 @@ void check_mesh(const Study& study, FaultList& faults) {
   if (study.tolerance) faults.require_length("/mesh/tolerance", *study.tolerance, 1, nm_per_mm);
 }
 
+void check_elements(const Study& study, FaultList& faults) {
+  if (study.order != 1 && study.order != 2)
+    faults.add("/output/order", fmt::format("elements of order {} are not made; expected 1 or 2", study.order));
+  if (study.wedge_nodes != 15 && study.wedge_nodes != 18)
+    faults.add("/output/wedge_nodes", fmt::format("there is no wedge of {} nodes; expected 15 or 18", study.wedge_nodes));
+  if (study.order == 2 && study.split == ElementSplit::tetrahedra && study.wedge_nodes == 15)
+    faults.add("/output/wedge_nodes", "tetrahedra of second order are cut from wedges of 18 nodes; leave 15 out");
+}
+
 }  // namespace
 
 std::string_view name_of(RegionKind value) {
@@ -109,6 +118,10 @@ std::string_view name_of(TriangleSeed value) {
   return name_in(seed_names, value);
 }
 
+std::string_view name_of(ElementSplit value) {
+  return name_in(split_names, value);
+}
+
 HeightPolicy parse_height_policy(std::string_view text) {
   if (text.size() == 1 && text[0] >= '1' && text[0] <= '7') return policy_names[static_cast<std::size_t>(text[0] - '0')].value;
   return value_in(policy_names, text, "height policy");
@@ -118,6 +131,9 @@ SublayerRule parse_sublayer_rule(std::string_view text) {
 }
 TriangleSeed parse_triangle_seed(std::string_view text) {
   return value_in(seed_names, text, "triangle seed");
+}
+ElementSplit parse_element_split(std::string_view text) {
+  return value_in(split_names, text, "split");
 }
 ConductorMode parse_conductor_mode(std::string_view text) {
   return value_in(conductor_names, text, "conductor mode");
@@ -133,9 +149,10 @@ bool Study::operator==(const Study& other) const {
          policy == other.policy && sublayers == other.sublayers && height_bounds == other.height_bounds &&
          match == other.match && paper_compat == other.paper_compat && tolerance == other.tolerance &&
          arcs.sagitta_nm == other.arcs.sagitta_nm && arcs.mode == other.arcs.mode && unit == other.unit &&
-         max_prisms == other.max_prisms && conductor_surface == other.conductor_surface && problem == other.problem &&
-         solver == other.solver && ports == other.ports && boundaries == other.boundaries && sweep == other.sweep &&
-         modes == other.modes && fabrication == other.fabrication;
+         split == other.split && order == other.order && wedge_nodes == other.wedge_nodes && max_prisms == other.max_prisms &&
+         conductor_surface == other.conductor_surface && problem == other.problem && solver == other.solver &&
+         ports == other.ports && boundaries == other.boundaries && sweep == other.sweep && modes == other.modes &&
+         fabrication == other.fabrication;
 }
 
 std::optional<double> highest_frequency_hz(const Study& study) {
@@ -151,6 +168,7 @@ std::vector<Fault> faults_of(const Study& study) {
   faults.require_length("/air/around", study.air_around, 0, max_coordinate_nm);
   check_mesh(study, faults);
   faults.require_length("/arcs/sagitta", study.arcs.sagitta_nm, 1, nm_per_mm);
+  check_elements(study, faults);
   if (study.max_prisms < 1)
     faults.add("/limits/max_prisms", fmt::format("{} is out of range; expected at least 1", study.max_prisms));
   check_physics(study, faults);

@@ -98,8 +98,16 @@ void read_mesh(const JsonValue& object, Study& study) {
     });
 }
 
+/// Anything beyond a few digits is out of range; check() says so.
+int small_integer(const JsonValue& field) {
+  return static_cast<int>(std::clamp<std::int64_t>(field.as_integer(), -1, 1000));
+}
+
 void read_output(const JsonValue& object, Study& study) {
-  object.allow_only({"unit"});
+  object.allow_only({"unit", "split", "order", "wedge_nodes"});
+  read_choice(object, "split", split_names, study.split);
+  if (const auto field = object.find("order")) study.order = small_integer(*field);
+  if (const auto field = object.find("wedge_nodes")) study.wedge_nodes = small_integer(*field);
   if (const auto unit = object.find("unit")) study.unit = parsed(*unit, [&] { return parse_length_unit(unit->as_string()); });
 }
 
@@ -252,7 +260,10 @@ std::string to_json(const Study& study, const StudyWords& words) {
   mesh["paper_compat"] = study.paper_compat;
   mesh["tolerance"] = optional_length(study.tolerance);
   root["arcs"] = Json{{"sagitta", exact_length(study.arcs.sagitta_nm)}, {"mode", name_in(arc_names, study.arcs.mode)}};
-  root["output"] = Json{{"unit", name_of(study.unit)}};
+  root["output"] = Json{{"unit", name_of(study.unit)},
+                        {"split", name_of(study.split)},
+                        {"order", study.order},
+                        {"wedge_nodes", study.wedge_nodes}};
   root["limits"] = Json{{"max_prisms", study.max_prisms}};
   write_physics(study, words, root);
   write_fabrication(study.fabrication, root);

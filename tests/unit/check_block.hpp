@@ -262,7 +262,7 @@ class BlockBuilder {
       out_.mesh.names.push_back({3, tag, name});
     }
     for (const auto& [tag, sum] : face_sums_) {
-      const std::string name = tag == 1 ? "outer" : "surface|H";
+      const std::string name = tag == 1 ? "outer" : "void";
       out_.expectation.faces.push_back({tag, name, tag == 1, sum.num_faces, sum.area_m2});
       out_.mesh.names.push_back({2, tag, name});
     }

@@ -18,8 +18,8 @@ namespace pcbmesh {
 namespace {
 
 using formats::DeckOptions;
-using study::Problem;
 using mesh::BoundaryCondition;
+using study::Problem;
 using testing::Box;
 using testing::box_parts;
 using Complex = std::complex<double>;

@@ -261,7 +261,7 @@ TEST(MshReader, SaysWhatIsWrongAndWhere) {
            {head_22 + "$Nodes\n-1\n", "-1 nodes", 0},
            {elements("1 2 2 1 1 1 2 4"), "node 4", 12},
            {elements("1 2 2 1 1 1 2 -4"), "node -4", 12},
-           {elements("1 9 2 1 1 1 2 3 1 2 3"), "order 1", 12},
+           {elements("1 17 2 1 1 1 2 3 1 2 3"), "element type 17 is not read", 12},
            {elements("1 0 2 1 1 1 2 3"), "no element type 0", 12},
            {elements("1 2 2 -1 1 1 2 3"), "group -1", 12},
            {elements("1 2 99 1 1 1 2 3"), "99 tags", 12},

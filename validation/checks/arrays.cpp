@@ -29,6 +29,11 @@ bool check_block_sizes(const std::vector<Block>& blocks, const char* what, Check
                 fmt::format("{} block {} has {} corners for {} elements of {} corners each", what, b, block.corners.size(),
                             block.tags.size(), corners_of(block.kind)));
       fine = false;
+    } else if (block.num_mid < 0 || block.mids.size() != block.tags.size() * static_cast<std::size_t>(block.num_mid)) {
+      log.found("array.size", FindingSeverity::error,
+                fmt::format("{} block {} has {} mid-side nodes for {} elements of {} each", what, b, block.mids.size(),
+                            block.tags.size(), block.num_mid));
+      fine = false;
     }
   }
   return fine;
@@ -54,6 +59,10 @@ CornerTallies check_corners(const Context& context, const std::vector<Block>& bl
         for (std::size_t k = 0; k < n; ++k) {
           outside |= corners[k] < 0 || corners[k] >= num_nodes;
           for (std::size_t j = 0; j < k; ++j) repeated |= corners[j] == corners[k];
+        }
+        for (std::int64_t k = i * block.num_mid; k < (i + 1) * block.num_mid; ++k) {
+          const std::int64_t mid = block.mids[static_cast<std::size_t>(k)];
+          outside |= mid < 0 || mid >= num_nodes;
         }
         if (outside) mine.out_of_range.add(first[b] + i);
         if (repeated) mine.repeated.add(first[b] + i);

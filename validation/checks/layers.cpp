@@ -60,9 +60,15 @@ class Stack {
 /// Level of each node, -1 = between levels.
 std::vector<std::int32_t> check_levels(const Context& context, const Stack& stack, CheckLog& log) {
   std::vector<std::int32_t> level_of(context.mesh.nodes.size(), -1);
+  // Nodes in the middle of edges lie between levels by right, and stray ones are another check's business.
+  std::vector<std::uint8_t> is_corner(level_of.size(), 0);
+  for (const mesh::CellBlock& block : context.mesh.cells) {
+    for (const std::int64_t node : block.corners) is_corner[static_cast<std::size_t>(node)] = 1;
+  }
   Tally off, uneven;
   std::vector<std::map<double, std::int64_t>> heights(stack.levels().size());
   for (std::size_t i = 0; i < level_of.size(); ++i) {
+    if (is_corner[i] == 0) continue;
     const double z = context.mesh.nodes[i][2];
     level_of[i] = stack.level_at(z, context.tolerance);
     if (level_of[i] < 0) {

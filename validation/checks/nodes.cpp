@@ -15,13 +15,14 @@ namespace {
 Tally find_orphans(const Context& context) {
   std::vector<std::uint8_t> used(context.mesh.nodes.size(), 0);
   for (const mesh::CellBlock& block : context.mesh.cells) {
-    for_each_slice(context.num_threads, static_cast<std::int64_t>(block.corners.size()),
-                   [&](int, std::int64_t, std::int64_t first, std::int64_t last) {
-                     for (std::int64_t i = first; i < last; ++i) {
-                       const auto node = static_cast<std::size_t>(block.corners[static_cast<std::size_t>(i)]);
-                       std::atomic_ref(used[node]).store(1, std::memory_order_relaxed);
-                     }
-                   });
+    for (const std::vector<std::int64_t>* nodes : {&block.corners, &block.mids})
+      for_each_slice(context.num_threads, static_cast<std::int64_t>(nodes->size()),
+                     [&](int, std::int64_t, std::int64_t first, std::int64_t last) {
+                       for (std::int64_t i = first; i < last; ++i) {
+                         const auto node = static_cast<std::size_t>((*nodes)[static_cast<std::size_t>(i)]);
+                         std::atomic_ref(used[node]).store(1, std::memory_order_relaxed);
+                       }
+                     });
   }
   Tally orphans;
   for (std::size_t i = 0; i < used.size(); ++i) {
@@ -140,7 +141,7 @@ void check_nodes(const Context& context, Report& report) {
   CheckLog log(report, context, "nodes");
   log.examined(context.num_nodes());
   const Tally orphans = find_orphans(context);
-  log.found("node.orphan", FindingSeverity::error, fmt::format("{} nodes are a corner of no cell", orphans.count()), orphans,
+  log.found("node.orphan", FindingSeverity::error, fmt::format("{} nodes belong to no cell", orphans.count()), orphans,
             PlaceKind::node);
   if (!context.has_geometry || context.num_nodes() == 0) return;
   const Duplicates duplicates = find_duplicates(context);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -53,6 +54,28 @@ struct WriteMeshOptions {
   int index_bits = 0;             ///< VTK and HDF5 family: 32 or 64; 0 = 32 where they suffice
   int num_threads = 1;            ///< for compression; the bytes are the same for any number
   bool one_number_space = false;  ///< face groups are numbered after the volume groups (GetDP knows one kind of number)
+  std::string mfem_version{};     ///< "1.3" (named sets) or "1.0"; empty = 1.3
+};
+
+/// Element kinds as a set of bits.
+using KindSet = std::uint32_t;
+template <class... Kinds>
+[[nodiscard]] constexpr KindSet kind_set(Kinds... kinds) {
+  return (KindSet{0} | ... | (KindSet{1} << static_cast<int>(kinds)));
+}
+[[nodiscard]] constexpr bool holds(KindSet set, mesh::ElementKind kind) {
+  return ((set >> static_cast<int>(kind)) & 1U) != 0;
+}
+
+inline constexpr KindSet all_kinds = (KindSet{1} << (static_cast<int>(mesh::ElementKind::wedge18) + 1)) - 1;
+
+/// What a mesh format can hold of a mesh, as its reader and writer do it here.
+struct FormatScope {
+  KindSet written = 0;  ///< 0 = not stated
+  KindSet readable = 0;
+  bool has_tags = false;   ///< numbers of volume and face groups survive
+  bool has_names = false;  ///< so do their names
+  bool is_folder = false;  ///< the output is a folder of files
 };
 
 /// A mesh format. `write` or `read` may be null.
@@ -63,6 +86,7 @@ struct MeshFormat {
   void (*write)(mesh::MeshSource& source, const std::filesystem::path& file, const WriteMeshOptions& options,
                 const Progress& progress);
   mesh::MeshData (*read)(const std::filesystem::path& file, const Progress& progress);
+  FormatScope scope{};
 };
 
 /// The tables: explicit, ordered, no registration at start-up.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <vector>
 
@@ -50,6 +51,16 @@ struct ArcOptions {
 
 /// Bounding box of the figure, pen included (arcs bounded safely from outside).
 [[nodiscard]] Box bounds(const Figure& figure);
+
+/// A circle that an outline follows, in nanometres.
+struct OutlineCircle {
+  double x_nm = 0, y_nm = 0, radius_nm = 0;
+  friend auto operator<=>(const OutlineCircle&, const OutlineCircle&) = default;
+};
+
+/// Appends the circles that the outline of a figure may follow: arcs of its path, widened by the pen, and the pen's round ends.
+/// Some may lie inside the figure.
+void append_circles(const Figure& figure, std::vector<OutlineCircle>& circles);
 
 /// Disc, round-ended segment and polygon as figures.
 [[nodiscard]] Figure disc(Point centre, Nm diameter);

@@ -20,11 +20,13 @@ enum class FaceKind : std::uint8_t { triangle, quadrangle };
   return kind == FaceKind::triangle ? 3 : 4;
 }
 
-/// Cells of one kind. Corners in Gmsh order.
+/// Cells of one kind and order. Corners in Gmsh order. Several blocks may be of one kind.
 struct CellBlock {
   CellKind kind = CellKind::wedge;
   std::vector<std::int64_t> corners;  ///< node indices (0-based), corners_of(kind) per cell
   std::vector<std::int32_t> tags;     ///< volume tag per cell (the file's positive id; 0 = none)
+  std::int32_t num_mid = 0;           ///< nodes of second order per cell; 0 = first order
+  std::vector<std::int64_t> mids{};   ///< their indices, num_mid per cell, in Gmsh order (see ElementKind)
   [[nodiscard]] std::int64_t size() const { return static_cast<std::int64_t>(tags.size()); }
 };
 
@@ -32,6 +34,8 @@ struct FaceBlock {
   FaceKind kind = FaceKind::triangle;
   std::vector<std::int64_t> corners;
   std::vector<std::int32_t> tags;
+  std::int32_t num_mid = 0;
+  std::vector<std::int64_t> mids{};
   [[nodiscard]] std::int64_t size() const { return static_cast<std::int64_t>(tags.size()); }
 };
 
@@ -48,7 +52,7 @@ struct FileFormat {
   bool is_binary = false;  ///< else text
 };
 
-/// An explicit mesh read from any file, for check and convert. Coordinates as written (see unit_m).
+/// An explicit mesh read from any file, for check and convert. Coordinates as written: a file does not know its unit.
 struct MeshData {
   std::string source;  ///< file
   std::vector<std::array<double, 3>> nodes;

@@ -110,9 +110,10 @@ struct ModelParts {
   std::vector<Slab> slabs;
   std::vector<Body> bodies;  ///< [0] domain, [1] board
   std::vector<BodyShape> shapes;
-  std::vector<std::int32_t> nets_of_interest;  ///< nets named by the study; empty = all
-  Nm narrowest_feature_nm = 0;                 ///< smallest pen, hole or pad width of the copper in the domain; 0 = unknown
-  Nm narrowest_of_interest_nm = 0;             ///< the same for nets_of_interest
+  std::vector<std::int32_t> nets_of_interest;      ///< nets named by the study; empty = all
+  Nm narrowest_feature_nm = 0;                     ///< smallest pen, hole or pad width of the copper in the domain; 0 = unknown
+  Nm narrowest_of_interest_nm = 0;                 ///< the same for nets_of_interest
+  std::vector<geometry::OutlineCircle> circles{};  ///< that outlines may follow, ascending; only if the study asks for order 2
   std::vector<Port> ports;
   std::array<SideCondition, num_sides> sides{};
   bool conductors_are_perfect = false;  ///< hollow and sheet conductors: PEC, not lossy copper
@@ -146,6 +147,7 @@ class Model {
   [[nodiscard]] std::span<const Body> bodies() const { return parts_->bodies; }
   [[nodiscard]] std::span<const BodyShape> shapes() const { return parts_->shapes; }
   [[nodiscard]] std::span<const std::int32_t> nets_of_interest() const { return parts_->nets_of_interest; }
+  [[nodiscard]] std::span<const geometry::OutlineCircle> circles() const { return parts_->circles; }
   [[nodiscard]] Nm narrowest_feature_nm() const { return parts_->narrowest_feature_nm; }
   [[nodiscard]] Nm narrowest_of_interest_nm() const { return parts_->narrowest_of_interest_nm; }
   [[nodiscard]] std::span<const Port> ports() const { return parts_->ports; }

@@ -16,6 +16,7 @@ namespace pcbmesh::overlay {
 struct OverlayOptions {
   std::optional<Nm> tolerance_nm;         ///< empty = auto: min(20 um, narrowest/8) for a whole board,
                                           ///< min(5 um, narrowest/20) when nets of interest are named
+  std::optional<Nm> coarsest_auto_nm{};   ///< auto is at most this: up to the sagitta of arcs their corners stay on them
   double simplify_over_tolerance = 0.75;  ///< per-layer collapse distance over tolerance (15 um at 20 um)
   double blunt_angle_deg = 30.0;          ///< needle tips sharper than this are blunted; 0 = off
   double blunt_width_over_tolerance = 1.35;

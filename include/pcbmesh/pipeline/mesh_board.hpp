@@ -8,6 +8,7 @@
 #include "pcbmesh/base/diagnostics.hpp"
 #include "pcbmesh/base/progress.hpp"
 #include "pcbmesh/board/board.hpp"
+#include "pcbmesh/geometry/path.hpp"
 #include "pcbmesh/layering/divide_layers.hpp"
 #include "pcbmesh/layering/prism_quality.hpp"
 #include "pcbmesh/mesh/prism_mesh.hpp"
@@ -41,6 +42,7 @@ struct MeshBoardResult {
   Forecast forecast;  ///< made before the last triangulation
   Diagnostics diagnostics;
   std::vector<StepTime> times;
+  std::vector<geometry::OutlineCircle> circles{};  ///< that outlines may follow; only for elements of second order
 };
 
 /// The whole way from board to mesh: compose, overlay, triangulate, choose layers (with the paper's feedback), extrude.

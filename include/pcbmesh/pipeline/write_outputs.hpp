@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "pcbmesh/base/progress.hpp"
+#include "pcbmesh/extrude/second_order_source.hpp"
 #include "pcbmesh/formats/registry.hpp"
 #include "pcbmesh/pipeline/mesh_board.hpp"
 #include "pcbmesh/validation/report.hpp"
@@ -26,6 +27,7 @@ struct OutputOptions {
 struct OutputResult {
   std::vector<std::string> files;            ///< written, in order
   std::optional<validation::Report> report;  ///< empty if not asked for
+  std::optional<extrude::SecondOrderStatistics> second_order{};
 };
 
 /// "out/board.msh" and ".tags.json" give "out/board.tags.json".
@@ -47,7 +49,7 @@ void write_text_file(const std::filesystem::path& file, std::string_view text);
 /// The same, byte for byte: write_text_file ends a last line that has no end.
 void write_binary_file(const std::filesystem::path& file, std::string_view bytes);
 
-/// Every node, prism and boundary face written out: O(prisms) memory. For judging and converting, not for writing.
+/// The prisms and tagged faces written out: O(prisms) memory. For judging and converting, not for writing.
 [[nodiscard]] mesh::MeshData expand(const mesh::PrismMesh& mesh);
 
 /// Adds to findings about nets which feature of the board file lies nearest to the fault, for each net concerned.

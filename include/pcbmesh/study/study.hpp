@@ -62,6 +62,12 @@ enum class TriangleSeed {
   hex        ///< a hexagonal lattice between outlines cut to its edge: nearly equilateral triangles, about half as many
 };
 
+/// What the mesh is written as.
+enum class ElementSplit {
+  none,       ///< prisms
+  tetrahedra  ///< three tetrahedra per prism, for solvers without edge elements on prisms
+};
+
 /// How a layer of height H is cut by the common height h.
 enum class SublayerRule {
   floor,     ///< max(1, floor(H/h)): what the paper's tables imply
@@ -122,6 +128,9 @@ struct Study {
   std::optional<Nm> tolerance;  ///< empty = auto
   geometry::ArcOptions arcs{};
   LengthUnit unit = LengthUnit::metre;
+  ElementSplit split = ElementSplit::none;
+  int order = 1;         ///< of the elements: 1 or 2; with 2 the middles of chords lie on the arcs of the layout
+  int wedge_nodes = 18;  ///< order 2: 18 (with nodes in the middle of quadrangles) or 15
   std::int64_t max_prisms = 200'000'000;  ///< refuse above this forecast
 
   Problem problem = Problem::driven;
@@ -141,10 +150,12 @@ struct Study {
 [[nodiscard]] std::string_view name_of(HeightPolicy value);
 [[nodiscard]] std::string_view name_of(SublayerRule value);
 [[nodiscard]] std::string_view name_of(TriangleSeed value);
+[[nodiscard]] std::string_view name_of(ElementSplit value);
 /// Inverse of name_of; the numbers "1" to "7" are policies too. @throws Error usage (101) listing the choices.
 [[nodiscard]] HeightPolicy parse_height_policy(std::string_view text);
 [[nodiscard]] SublayerRule parse_sublayer_rule(std::string_view text);
 [[nodiscard]] TriangleSeed parse_triangle_seed(std::string_view text);
+[[nodiscard]] ElementSplit parse_element_split(std::string_view text);
 [[nodiscard]] ConductorMode parse_conductor_mode(std::string_view text);
 
 /// Highest frequency of interest: study.frequency_hz, else the end of the sweep, else nothing.

@@ -92,7 +92,7 @@ usual_complaints = set()
 
 
 def kind_of_complaint(line):
-    return re.sub(r"[-+0-9.e]+", "#", line.strip())
+    return re.sub(r"[-+]?\d[\d.e+-]*", "#", line.strip())
 
 
 def learn_openfoam(file):

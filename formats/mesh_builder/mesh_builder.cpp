@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "formats/msh/mesh_builder.hpp"
+#include "formats/mesh_builder/mesh_builder.hpp"
 
 #include <fmt/format.h>
 
@@ -7,25 +7,31 @@
 #include <string>
 #include <utility>
 
-namespace pcbmesh::formats::msh {
+namespace pcbmesh::formats {
 namespace {
 
-using mesh::CellKind;
-using mesh::FaceKind;
+using mesh::ElementKind;
 
-/// Element types of first order, by the format's number.
-enum Type : std::int32_t {
-  line = 1,
-  triangle = 2,
-  quadrangle = 3,
-  tetrahedron = 4,
-  hexahedron = 5,
-  prism = 6,
-  pyramid = 7,
-  point = 15
-};
+bool is_face(ElementKind kind) {
+  return mesh::dimension_of(kind) == 2;
+}
 
 }  // namespace
+
+MeshBuilder::MeshBuilder(syntax::ByteSource& source) : source_(source) {
+  mesh_.num_other_elements.assign(2, 0);
+  constexpr mesh::CellKind by_corners[] = {mesh::CellKind::tetrahedron, mesh::CellKind::pyramid, mesh::CellKind::wedge,
+                                           mesh::CellKind::hexahedron, mesh::CellKind::hexahedron};
+  for (std::size_t i = 0; i < num_kinds; ++i) {
+    const auto kind = static_cast<ElementKind>(i);
+    const int corners = mesh::corners_of(kind), num_mid = mesh::nodes_of(kind) - corners;
+    cells_[i].num_mid = faces_[i].num_mid = num_mid;
+    if (is_face(kind))
+      faces_[i].kind = corners == 3 ? mesh::FaceKind::triangle : mesh::FaceKind::quadrangle;
+    else
+      cells_[i].kind = by_corners[corners - 4];
+  }
+}
 
 std::int64_t IdRuns::find_repeated() {
   std::sort(runs_.begin(), runs_.end());
@@ -45,7 +51,7 @@ void NodeNumbers::add(std::int64_t number) {
   ++size_;
 }
 
-void NodeNumbers::finish(const ByteSource& source) {
+void NodeNumbers::finish(const syntax::ByteSource& source) {
   if (is_dense_) {
     if (size_ > 0 && first_ < 1) source.fail(fmt::format("node number {} is not positive", first_));
     return;
@@ -88,91 +94,39 @@ void MeshBuilder::finish_nodes() {
   numbers_.finish(source_);
 }
 
-ElementType MeshBuilder::type_of(std::int32_t type) const {
-  switch (type) {
-    case Type::point:
-      return {0, 1};
-    case Type::line:
-      return {1, 2};
-    case Type::triangle:
-      return {2, 3};
-    case Type::quadrangle:
-      return {2, 4};
-    case Type::tetrahedron:
-      return {3, 4};
-    case Type::hexahedron:
-      return {3, 8};
-    case Type::prism:
-      return {3, 6};
-    case Type::pyramid:
-      return {3, 5};
-    default:
-      if (type >= 8 && type <= 140)
-        source_.fail(
-            fmt::format("element type {} is curved or of second or higher order; only straight first-order elements "
-                        "are read, so write the mesh with order 1",
-                        type));
-      source_.fail(fmt::format("there is no element type {}", type));
-  }
-}
-
-MeshBuilder::Target MeshBuilder::target_of(std::int32_t type) {
-  const auto cell = [&](CellKind kind) {
-    mesh::CellBlock& block = cells_[static_cast<std::size_t>(kind)];
-    return Target{&block.corners, &block.tags};
-  };
-  const auto face = [&](FaceKind kind) {
-    mesh::FaceBlock& block = faces_[static_cast<std::size_t>(kind)];
-    return Target{&block.corners, &block.tags};
-  };
-  switch (type) {
-    case Type::triangle:
-      return face(FaceKind::triangle);
-    case Type::quadrangle:
-      return face(FaceKind::quadrangle);
-    case Type::tetrahedron:
-      return cell(CellKind::tetrahedron);
-    case Type::hexahedron:
-      return cell(CellKind::hexahedron);
-    case Type::prism:
-      return cell(CellKind::wedge);
-    case Type::pyramid:
-      return cell(CellKind::pyramid);
-    default:
-      return {};
-  }
-}
-
-void MeshBuilder::reserve(std::int32_t type, std::int64_t count) {
-  const Target target = target_of(type);
-  if (target.tags == nullptr) return;
+void MeshBuilder::reserve(ElementKind kind, std::int64_t count) {
   const auto more = [](auto& items, std::size_t extra) {
     // Many small blocks must not make each of them a copy of all before.
     if (items.size() + extra > items.capacity()) items.reserve(std::max(items.size() + extra, items.capacity() * 2));
   };
-  more(*target.tags, static_cast<std::size_t>(count));
-  more(*target.corners, static_cast<std::size_t>(count) * static_cast<std::size_t>(type_of(type).num_nodes));
+  const auto in = [&](auto& block) {
+    const auto wanted = static_cast<std::size_t>(count);
+    more(block.tags, wanted);
+    more(block.corners, wanted * static_cast<std::size_t>(mesh::corners_of(kind)));
+    more(block.mids, wanted * static_cast<std::size_t>(block.num_mid));
+  };
+  is_face(kind) ? in(faces_[static_cast<std::size_t>(kind)]) : in(cells_[static_cast<std::size_t>(kind)]);
 }
 
-void MeshBuilder::add_element(std::int32_t type, std::int64_t number, std::int32_t tag, std::span<const std::int64_t> nodes) {
+void MeshBuilder::add_element(ElementKind kind, std::int64_t number, std::int32_t tag, std::span<const std::int64_t> nodes) {
   elements_.add(number);
-  std::array<std::int64_t, 8> indices{};
+  std::array<std::int64_t, 18> indices{};
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     indices[i] = numbers_.find(nodes[i]);
     if (indices[i] < 0) source_.fail(fmt::format("element {} names node {}, which does not exist", number, nodes[i]));
   }
   if (tag < 0) source_.fail(fmt::format("element {} has physical group {}; groups are numbered from 1 here", number, tag));
-  const Target target = target_of(type);
-  if (const int dimension = type_of(type).dimension; tag == 0 && dimension < 3) {
-    ++mesh_.num_untagged[static_cast<std::size_t>(dimension)];
-  }
-  if (target.tags == nullptr) {
-    ++mesh_.num_other_elements[type == Type::point ? 0 : 1];
+  if (tag == 0 && is_face(kind)) {
+    ++mesh_.num_untagged[2];
     return;
   }
-  if (tag == 0 && (type == Type::triangle || type == Type::quadrangle)) return;
-  target.tags->push_back(tag);
-  target.corners->insert(target.corners->end(), indices.begin(), indices.begin() + static_cast<std::ptrdiff_t>(nodes.size()));
+  const auto corners = indices.begin() + mesh::corners_of(kind), end = indices.begin() + mesh::nodes_of(kind);
+  const auto into = [&](auto& block) {
+    block.tags.push_back(tag);
+    block.corners.insert(block.corners.end(), indices.begin(), corners);
+    block.mids.insert(block.mids.end(), corners, end);
+  };
+  is_face(kind) ? into(faces_[static_cast<std::size_t>(kind)]) : into(cells_[static_cast<std::size_t>(kind)]);
 }
 
 void MeshBuilder::finish_elements() {
@@ -182,15 +136,11 @@ void MeshBuilder::finish_elements() {
 
 mesh::MeshData MeshBuilder::take(std::string source_name) {
   mesh_.source = std::move(source_name);
-  for (std::size_t kind = 0; kind < cells_.size(); ++kind) {
-    cells_[kind].kind = static_cast<CellKind>(kind);
-    if (!cells_[kind].tags.empty()) mesh_.cells.push_back(std::move(cells_[kind]));
-  }
-  for (std::size_t kind = 0; kind < faces_.size(); ++kind) {
-    faces_[kind].kind = static_cast<FaceKind>(kind);
-    if (!faces_[kind].tags.empty()) mesh_.faces.push_back(std::move(faces_[kind]));
-  }
+  for (mesh::CellBlock& block : cells_)
+    if (!block.tags.empty()) mesh_.cells.push_back(std::move(block));
+  for (mesh::FaceBlock& block : faces_)
+    if (!block.tags.empty()) mesh_.faces.push_back(std::move(block));
   return std::move(mesh_);
 }
 
-}  // namespace pcbmesh::formats::msh
+}  // namespace pcbmesh::formats

@@ -8,10 +8,11 @@
 #include <utility>
 #include <vector>
 
-#include "formats/msh/byte_source.hpp"
+#include "formats/syntax/byte_source.hpp"
 #include "pcbmesh/mesh/mesh_data.hpp"
+#include "pcbmesh/mesh/mesh_source.hpp"
 
-namespace pcbmesh::formats::msh {
+namespace pcbmesh::formats {
 
 /// Ids seen so far as runs of neighbours: files number their items in long runs, so this stays small.
 class IdRuns {
@@ -34,7 +35,7 @@ class NodeNumbers {
  public:
   void add(std::int64_t number);
   /// Call when all are added. @throws Error file_syntax (202) if one came twice or is not positive.
-  void finish(const ByteSource& source);
+  void finish(const syntax::ByteSource& source);
   [[nodiscard]] std::int64_t size() const { return size_; }
   /// Index, or -1 if there is no such node.
   [[nodiscard]] std::int64_t find(std::int64_t number) const {
@@ -51,16 +52,10 @@ class NodeNumbers {
   std::vector<std::pair<std::int64_t, std::int64_t>> sorted_;  ///< (number, index), when they are not
 };
 
-/// What an element type number of the format means.
-struct ElementType {
-  int dimension = 0;
-  int num_nodes = 0;
-};
-
 /// Collects a mesh while a file is read; every index is checked here.
 class MeshBuilder {
  public:
-  explicit MeshBuilder(ByteSource& source) : source_(source) { mesh_.num_other_elements.assign(2, 0); }
+  explicit MeshBuilder(syntax::ByteSource& source);
 
   void set_format(std::string version, bool is_binary) { mesh_.format = {"msh", std::move(version), is_binary}; }
   void add_name(int dimension, std::int32_t tag, std::string name);
@@ -72,30 +67,31 @@ class MeshBuilder {
   void finish_nodes();
   [[nodiscard]] bool has_nodes() const { return has_nodes_; }
 
-  /// @throws Error file_syntax (202) for kinds that are not read, saying why.
-  [[nodiscard]] ElementType type_of(std::int32_t type) const;
-  /// Makes room for elements of one type that share a tag.
-  void reserve(std::int32_t type, std::int64_t count);
-  /// @param nodes  node numbers of the file, as many as the type has. @throws Error file_syntax (202).
-  void add_element(std::int32_t type, std::int64_t number, std::int32_t tag, std::span<const std::int64_t> nodes);
+  /// Makes room for elements of one kind.
+  void reserve(mesh::ElementKind kind, std::int64_t count);
+  /// @param nodes  node numbers of the file, in Gmsh order, as many as the kind has. Faces without a tag are dropped.
+  /// @throws Error file_syntax (202): a node that does not exist, a negative tag.
+  void add_element(mesh::ElementKind kind, std::int64_t number, std::int32_t tag, std::span<const std::int64_t> nodes);
+  /// Counts a point (0) or line (1), which no mesh here holds.
+  void add_other(int dimension, std::int32_t tag) {
+    ++mesh_.num_other_elements[static_cast<std::size_t>(dimension)];
+    if (tag == 0) ++mesh_.num_untagged[static_cast<std::size_t>(dimension)];
+  }
+  [[nodiscard]] const NodeNumbers& numbers() const { return numbers_; }
   void finish_elements();
 
   [[nodiscard]] mesh::MeshData take(std::string source_name);
 
  private:
-  struct Target {
-    std::vector<std::int64_t>* corners = nullptr;
-    std::vector<std::int32_t>* tags = nullptr;
-  };
-  [[nodiscard]] Target target_of(std::int32_t type);
+  static constexpr std::size_t num_kinds = static_cast<std::size_t>(mesh::ElementKind::wedge18) + 1;
 
-  ByteSource& source_;
+  syntax::ByteSource& source_;
   mesh::MeshData mesh_;
   NodeNumbers numbers_;
   IdRuns elements_;
-  std::array<mesh::CellBlock, 4> cells_;  ///< by CellKind
-  std::array<mesh::FaceBlock, 2> faces_;  ///< by FaceKind
+  std::array<mesh::CellBlock, num_kinds> cells_;  ///< by ElementKind, as faces_
+  std::array<mesh::FaceBlock, num_kinds> faces_;
   bool has_nodes_ = false;
 };
 
-}  // namespace pcbmesh::formats::msh
+}  // namespace pcbmesh::formats

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "formats/msh/byte_source.hpp"
+#include "formats/syntax/byte_source.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -15,7 +15,7 @@
 
 #include "formats/syntax/input_file.hpp"
 
-namespace pcbmesh::formats::msh {
+namespace pcbmesh::formats::syntax {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "values are taken as they stand in the file");
@@ -220,4 +220,4 @@ std::int64_t Numbers::justified(std::int64_t count, std::int64_t bytes, std::int
   return count;
 }
 
-}  // namespace pcbmesh::formats::msh
+}  // namespace pcbmesh::formats::syntax

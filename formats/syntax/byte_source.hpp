@@ -11,7 +11,7 @@
 
 #include "pcbmesh/base/error.hpp"
 
-namespace pcbmesh::formats::msh {
+namespace pcbmesh::formats::syntax {
 
 /// A file that is read once from front to back through a small window, as bytes, words or lines.
 /// Packed files (.gz, .xz) are unpacked in memory first.
@@ -44,6 +44,8 @@ class ByteSource {
   void end_line();
   /// Skips blanks and line ends; false at the end of the file.
   [[nodiscard]] bool skip_blanks();
+  /// The next byte, after skip_blanks() was true. It stays.
+  [[nodiscard]] char peek() const { return window_[at_]; }
   /// Skips everything up to and with a marker that starts a line. @throws Error file_truncated (205).
   void skip_past(std::string_view marker);
 
@@ -90,4 +92,4 @@ class Numbers {
   bool binary_;
 };
 
-}  // namespace pcbmesh::formats::msh
+}  // namespace pcbmesh::formats::syntax

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string_view>
+
+namespace pcbmesh::formats {
+
+/// A folder of files that appears whole or not at all: its files are written in a folder beside it, which then takes its place.
+/// An older folder of that name is replaced only if it holds nothing but files of the given names: what else lies there is
+/// somebody's.
+class FolderSink {
+ public:
+  /// @param names  of all files the folder may hold. @throws Error write_failed (701).
+  FolderSink(const std::filesystem::path& target, std::span<const std::string_view> names);
+  ~FolderSink();
+  FolderSink(const FolderSink&) = delete;
+  FolderSink& operator=(const FolderSink&) = delete;
+
+  /// Where a file is to be written until commit().
+  [[nodiscard]] std::filesystem::path file(std::string_view name) const { return part_ / name; }
+  /// Makes the folder appear under its name. @throws Error write_failed (701); the old folder is then still there.
+  void commit();
+
+ private:
+  [[noreturn]] void fail(int error_number, std::string_view what) const;
+  void require_replaceable() const;
+
+  std::filesystem::path target_, part_;
+  std::span<const std::string_view> names_;
+};
+
+}  // namespace pcbmesh::formats
