@@ -83,6 +83,11 @@ Reference PortSearch::find_reference(const Terminals& nets, std::int32_t layer, 
   return find_references(nets, layer, section).nearest();
 }
 
+bool PortSearch::has_fills(std::int32_t net) const {
+  return std::ranges::any_of(
+      board_.shapes(), [&](const board::Shape& shape) { return shape.net == net && shape.kind == board::ShapeKind::fill; });
+}
+
 std::optional<GapPlace> PortSearch::gap_towards(const Terminals& nets, std::int32_t layer, Point p,
                                                 std::array<double, 2> direction, double width_nm) const {
   const std::array<double, 2> across{-direction[1], direction[0]};
@@ -94,7 +99,8 @@ std::optional<GapPlace> PortSearch::gap_towards(const Terminals& nets, std::int3
     const Point from{p.x + std::llround(across[0] * shift), p.y + std::llround(across[1] * shift)};
     if (!copper_.covers(layer, nets.positive, from)) return std::nullopt;
     const auto gap = copper_.gap_from(layer, nets.positive, from, direction, widest_gap_nm);
-    if (!gap || gap->net < 0 || (nets.negative && gap->net != *nets.negative)) return std::nullopt;
+    // A line beside this one is no reference unless somebody says so.
+    if (!gap || gap->net < 0 || (nets.negative ? gap->net != *nets.negative : !has_fills(gap->net))) return std::nullopt;
     if (k == -samples_each_side)
       leave = gap->leave_nm, meet = gap->meet_nm, net = gap->net;
     else if (gap->net != net || std::abs(gap->leave_nm - leave) > 2 || std::abs(gap->meet_nm - meet) > 2)
@@ -135,7 +141,7 @@ GapPlace PortSearch::find_gap(const Terminals& nets, std::int32_t layer, Point p
     best.reason = fmt::format(
         "no gap with two straight edges leads to {} on the same layer; give a point opposite the reference, or "
         "a smaller width",
-        nets.negative ? fmt::format("net '{}'", board_.net_name(*nets.negative)) : "another net");
+        nets.negative ? fmt::format("net '{}'", board_.net_name(*nets.negative)) : "a net with filled areas");
   return best;
 }
 

@@ -73,6 +73,7 @@ class PortSearch {
                                   const std::optional<Nm>& width) const;
 
  private:
+  [[nodiscard]] bool has_fills(std::int32_t net) const;
   [[nodiscard]] Reference look(const Terminals& nets, std::int32_t layer, const Section& section, int step) const;
   [[nodiscard]] std::optional<GapPlace> gap_towards(const Terminals& nets, std::int32_t layer, geometry::Point p,
                                                     std::array<double, 2> direction, double width_nm) const;

@@ -22,7 +22,7 @@ BOARDS = (
     ("06_thunderscope_pcie_interposer_4L_v10", "PCIe pair", "/TX3_P,/TX3_N", "hollow"),
     ("05_stickhub_2L_v9", "USB pair", "/U1D+,/U1D-", "sheet"),
     ("13_antmicro_ddr5_testbed_6L_v6", "DDR5 line", "CA1", "hollow"),
-    ("11_hackrf_one_rf_4L_v6", "RF line", "/frontend/RF_AMP_OUT", "solid"),
+    ("11_hackrf_one_rf_4L_v6", "RF line", "/frontend/RX_AMP_OUT", "solid"),
     ("04_antmicro_si_test_4L_v6", "line through a farm of vias", "Net-(J15-Pad1)", "sheet"),
 )
 

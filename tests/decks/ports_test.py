@@ -128,14 +128,14 @@ def palace_gets_no_chords(folder):
 
 WRONG = {
     "schema_version": 1,
-    "region": {"box": {"min": [5, 1], "max": [15, 9]}, "nets": ["LINE"]},
+    "region": {"kind": "box", "box": {"min": [5, 1], "max": [15, 9]}, "nets": ["LINE"]},
     "ports": [
         {"name": "no_pin", "net": "LINE", "at": {"pin": "J9.1"}},
         {"name": "outside", "net": "LINE", "at": {"pin": "J1.1"}},
         {"name": "no_copper", "net": "LINE", "at": {"point": [10, 2]}},
         {"name": "too_wide", "net": "LINE", "at": {"point": [10, 5]}, "width": "3mm"},
         {"name": "not_cut", "net": "LINE", "at": {"side": "ymin"}, "kind": "wave"},
-        {"name": "no_reference", "net": "GND", "at": {"point": [10, 2], "layer": "bottom"}, "shape": "vertical", "width": "1mm"},
+        {"name": "no_reference", "net": "GND", "at": {"point": [10, 2], "layer": "bottom"}, "shape": "vertical", "width": "0.5mm"},
         {"name": "over_the_edge", "net": "LINE", "at": {"point": [5.0, 5]}, "width": "2.5mm"},
         {"name": "first", "net": "LINE", "at": {"point": [8, 5]}},
         {"name": "again", "net": "LINE", "at": {"point": [8, 5.1]}},

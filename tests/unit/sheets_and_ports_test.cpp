@@ -4,11 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "pcbmesh/base/error.hpp"
 #include "pcbmesh/compose/compose.hpp"
+#include "pcbmesh/extrude/extrude.hpp"
 #include "pcbmesh/overlay/overlay.hpp"
+#include "pcbmesh/triangulate/triangulate.hpp"
 
 namespace pcbmesh {
 namespace {
@@ -58,6 +64,18 @@ study::Port at(Nm x, Nm y) {
   return port;
 }
 
+model::ModelParts parts_of(const model::Model& model) {
+  model::ModelParts parts;
+  parts.source = model.source();
+  parts.materials.assign(model.materials().begin(), model.materials().end());
+  parts.nets.assign(model.nets().begin(), model.nets().end());
+  parts.slabs.assign(model.slabs().begin(), model.slabs().end());
+  parts.bodies.assign(model.bodies().begin(), model.bodies().end());
+  parts.shapes.assign(model.shapes().begin(), model.shapes().end());
+  parts.ports.assign(model.ports().begin(), model.ports().end());
+  return parts;
+}
+
 std::string layers_of(const model::Model& model) {
   std::string text;
   for (const model::Slab& slab : model.slabs()) text += slab.layer + " ";
@@ -95,7 +113,7 @@ TEST(Sheets, OtherCopperTakesTheirPlace) {
   EXPECT_EQ(model.resolve(1, present).net, board::no_net) << "a sheet fills no slab";
 }
 
-TEST(Ports, StandBetweenTheirConductors) {
+TEST(Ports, M4_TheyComeLastAndStandBetweenTheirConductors) {
   study::Study study;
   study.ports = {at(10 * mm, 5 * mm)};
   const model::Model model = composed(study);
@@ -164,6 +182,65 @@ TEST(Ports, TheOverlayKeepsTheirEdgesStraight) {
     length += std::abs(static_cast<double>(q.y - p.y));
   }
   EXPECT_EQ(length, 1e6) << "the line is 1 mm long, straight, where it was put";
+}
+
+/// Planar mesh of a study, with or without chords.
+mesh::PlanarMesh triangulated(const model::Model& model, bool split_chords) {
+  Diagnostics diagnostics;
+  const overlay::OverlayResult graph = overlay::overlay(model, {}, diagnostics);
+  triangulate::TriangulateOptions options;
+  options.split_sheet_chords = split_chords;
+  return triangulate::triangulate(graph.graph, model, options, diagnostics).mesh;
+}
+
+/// Edges inside the sheets of a face with both ends on their rim.
+int chords(const mesh::PlanarMesh& planar, const model::Model& model, std::int32_t face) {
+  std::map<std::pair<std::int32_t, std::int32_t>, int> sides;
+  for (std::int32_t t = 0; t < planar.num_triangles(); ++t) {
+    if (model.sheet_at(face, planar.bodies_of_region(planar.regions()[static_cast<std::size_t>(t)])) < 0) continue;
+    const auto& c = planar.triangles()[static_cast<std::size_t>(t)];
+    for (std::size_t i = 0; i < 3; ++i) ++sides[std::minmax(c[i], c[i == 2 ? 0 : i + 1])];
+  }
+  std::set<std::int32_t> rim;
+  for (const auto& [edge, count] : sides)
+    if (count == 1) rim.insert({edge.first, edge.second});
+  return static_cast<int>(std::ranges::count_if(sides, [&](const auto& side) {
+    return side.second == 2 && rim.contains(side.first.first) && rim.contains(side.first.second);
+  }));
+}
+
+TEST(Sheets, T5_SplittingLeavesNoChord) {
+  const model::Model model = composed(with_mode(study::ConductorMode::sheet));
+  EXPECT_GT(chords(triangulated(model, false), model, 2), 10);
+  EXPECT_EQ(chords(triangulated(model, true), model, 2), 0);
+  EXPECT_EQ(chords(triangulated(model, true), model, 1), 0);
+}
+
+TEST(Ports, E3_TheFacesAreTheRectangle) {
+  study::Study study;
+  study.ports = {at(10 * mm, 5 * mm)};
+  const model::Model model = composed(study);
+  Diagnostics diagnostics;
+  const mesh::PlanarMesh planar = triangulated(model, false);
+  std::vector<double> z;
+  std::vector<std::int32_t> slab;
+  for (std::size_t s = 0; s < model.slabs().size(); ++s) {
+    z.push_back(static_cast<double>(model.slabs()[s].z_bottom_nm) * 1e-9);
+    slab.push_back(static_cast<std::int32_t>(s));
+  }
+  z.push_back(static_cast<double>(model.slabs().back().z_top_nm) * 1e-9);
+  const mesh::LayerPlan plan = mesh::LayerPlan::from_parts({z, slab});
+  const mesh::PrismMesh prisms = extrude::extrude(planar, plan, model, {}, {});
+  ASSERT_EQ(prisms.ports().size(), 1U);
+  const auto tag = std::ranges::find(prisms.face_tags(), "port|P", &mesh::FaceTag::name);
+  ASSERT_NE(tag, prisms.face_tags().end());
+  EXPECT_TRUE(tag->is_inner);
+  EXPECT_EQ(tag->condition, mesh::BoundaryCondition::port);
+  EXPECT_NEAR(tag->area_m2, 1e-3 * 0.5e-3, 1e-15);
+  // The same port over a model whose conductor is somewhere else is an error, not a mesh.
+  model::ModelParts elsewhere = parts_of(model);
+  elsewhere.ports[0].negative_net = 2;
+  EXPECT_THROW((void)extrude::extrude(planar, plan, model::Model::from_parts(std::move(elsewhere)), {}, {}), Error);
 }
 
 }  // namespace
