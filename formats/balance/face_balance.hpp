@@ -12,7 +12,7 @@ namespace pcbmesh::formats {
 /// that passes. A face between two cells cancels, seen from both sides; what is left must be the tagged faces of the hull.
 ///
 /// One wrong, lost, doubled or flipped element leaves a difference: all but surely, about 2^-50 to miss it.
-/// @cost no memory; about 8 ns per prism (benchmarks/write_bench.cpp).
+/// @cost no memory; a hash per face, within the figures of benchmarks/write_bench.cpp.
 /// @source Clarke et al., Asiacrypt 2003, for hashes of multisets. The polynomials here are antisymmetric: neither sorting nor
 /// branching is needed.
 class FaceBalance final : public mesh::MeshSource {

@@ -14,7 +14,7 @@ constexpr std::array<std::string_view, 1> extensions{".pcbmesh"};
 
 constinit const MeshFormat mesh_format{
     "native",
-    "pcbmesh's own implicit mesh, 1 to 2 bytes per prism",
+    "pcbmesh's own implicit mesh: plane, levels, labels",
     extensions,
     write_native,
     read_native,

@@ -37,6 +37,7 @@ model::SideCondition side_condition(const study::Boundary& boundary) {
     case study::BoundaryKind::impedance:
       return {model::SideKind::impedance, boundary.ohms};
     case study::BoundaryKind::none:
+    case study::BoundaryKind::automatic:  // resolved before
     case study::BoundaryKind::periodic:  // refused by study::check
       break;
   }
@@ -238,7 +239,8 @@ model::Model compose(const Board& board, const Study& study, Diagnostics& diagno
     throw Error(names.unknown.empty() ? ErrorCode::port_invalid : ErrorCode::name_unknown, names.unknown + gap + more,
                 {.file = board.source()});
   }
-  for (std::size_t i = 0; i < study::num_hull_sides; ++i) parts.sides[i] = side_condition(study.boundaries[i]);
+  const auto boundaries = study::resolved_boundaries(study);
+  for (std::size_t i = 0; i < study::num_hull_sides; ++i) parts.sides[i] = side_condition(boundaries[i]);
   parts.conductors_are_perfect = study.conductor_surface == study::ConductorSurface::pec;
   if (std::none_of(parts.bodies.begin(), parts.bodies.end(), [](const model::Body& body) {
         return body.kind == model::BodyKind::copper || body.kind == model::BodyKind::barrel;

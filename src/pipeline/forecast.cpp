@@ -18,8 +18,8 @@ std::size_t index(std::int32_t i) {
   return static_cast<std::size_t>(i);
 }
 
-/// Area of a triangle that refinement leaves alone, over the square of the bound on its edges. Source: fitted to
-/// docs/evidence/forecast.md.
+/// Area of a triangle that refinement leaves alone, over the square of the bound on its edges. Source: measured for
+/// CGAL's mesher, docs/evidence/paper.md.
 constexpr double area_over_edge_squared = 0.198;
 
 /// Triangles and heights to come.

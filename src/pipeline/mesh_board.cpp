@@ -87,6 +87,7 @@ MeshBoardResult mesh_board(const board::Board& board, const study::Study& given,
   std::vector<StepTime> times;
   Stopwatch timed(times);
   study::Study resolved = study;
+  resolved.boundaries = study::resolved_boundaries(study);
 
   progress.at("compose", 0);
   const model::Model model = timed("compose", [&] { return compose::compose(board, study, diagnostics); });

@@ -72,7 +72,8 @@ inline constexpr std::array<Choice<HullSide>, num_hull_sides> hull_side_names{{{
                                                                                {HullSide::zmin, "zmin"},
                                                                                {HullSide::zmax, "zmax"},
                                                                                {HullSide::side, "side"}}};
-inline constexpr std::array<Choice<BoundaryKind>, 6> boundary_names{{{BoundaryKind::none, "none"},
+inline constexpr std::array<Choice<BoundaryKind>, 7> boundary_names{{{BoundaryKind::automatic, "automatic"},
+                                                                     {BoundaryKind::none, "none"},
                                                                      {BoundaryKind::absorbing, "absorbing"},
                                                                      {BoundaryKind::pec, "pec"},
                                                                      {BoundaryKind::pmc, "pmc"},

@@ -155,6 +155,19 @@ bool Study::operator==(const Study& other) const {
          fabrication == other.fabrication;
 }
 
+std::array<Boundary, num_hull_sides> resolved_boundaries(const Study& study) {
+  std::array<Boundary, num_hull_sides> boundaries = study.boundaries;
+  const auto has_lumped_port = [&](std::size_t side) {
+    return std::ranges::any_of(study.ports, [&](const Port& port) {
+      return port.kind == PortKind::lumped && port.at.side && static_cast<std::size_t>(*port.at.side) == side;
+    });
+  };
+  for (std::size_t i = 0; i < num_hull_sides; ++i)
+    if (boundaries[i].kind == BoundaryKind::automatic)
+      boundaries[i].kind = has_lumped_port(i) ? BoundaryKind::none : BoundaryKind::absorbing;
+  return boundaries;
+}
+
 std::optional<double> highest_frequency_hz(const Study& study) {
   if (study.frequency_hz || !study.sweep) return study.frequency_hz;
   return study.sweep->list_hz.empty() ? study.sweep->to_hz : study.sweep->list_hz.back();

@@ -65,6 +65,7 @@ struct Port {
 };
 
 enum class BoundaryKind {
+  automatic,  ///< absorbing; none where a lumped port lies on the side, since an absorbing wall would load it
   none,       ///< nothing is said: the solver's natural condition
   absorbing,  ///< first-order absorbing boundary
   pec,        ///< electric wall; symmetry plane of odd fields
@@ -75,7 +76,7 @@ enum class BoundaryKind {
 
 /// What holds on one side of the domain.
 struct Boundary {
-  BoundaryKind kind = BoundaryKind::absorbing;
+  BoundaryKind kind = BoundaryKind::automatic;
   double ohms = 0;  ///< kind impedance
   bool operator==(const Boundary&) const = default;
 };

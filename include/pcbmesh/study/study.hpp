@@ -158,6 +158,9 @@ struct Study {
 [[nodiscard]] ElementSplit parse_element_split(std::string_view text);
 [[nodiscard]] ConductorMode parse_conductor_mode(std::string_view text);
 
+/// The conditions of all sides with `automatic` decided.
+[[nodiscard]] std::array<Boundary, num_hull_sides> resolved_boundaries(const Study& study);
+
 /// Highest frequency of interest: study.frequency_hz, else the end of the sweep, else nothing.
 [[nodiscard]] std::optional<double> highest_frequency_hz(const Study& study);
 
