@@ -35,7 +35,9 @@ std::shared_ptr<StudyOptions> add_study_options(CLI::App& command) {
   auto o = std::make_shared<StudyOptions>();
   constexpr const char* region = "Region of interest";
   command.add_option("--study", o->file, "Study JSON; flags override its fields")->check(CLI::ExistingFile)->group(region);
-  command.add_option("--nets", o->nets, "Mesh around these nets, e.g. /USB_P,/USB_N")->group(region);
+  command
+      .add_option("--nets", o->nets, "Mesh around these nets, e.g. /USB_P,/USB_N; with --region: the nets of interest in it")
+      ->group(region);
   command.add_option("--margin", o->margin, "Growth of the nets' bounding box (default 2mm)")->group(region);
   command.add_option("--region", o->region, "Mesh a box: xmin,ymin,xmax,ymax; y is up, as inspect prints it")->group(region);
   constexpr const char* domain = "Conductors and air";

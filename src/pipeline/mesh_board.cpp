@@ -185,7 +185,8 @@ MeshBoardResult mesh_board(const board::Board& board, const study::Study& given,
           quality,
           expected,
           std::move(diagnostics),
-          std::move(times)};
+          std::move(times),
+          {model.circles().begin(), model.circles().end()}};
 }
 
 }  // namespace pcbmesh::pipeline

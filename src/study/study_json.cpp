@@ -27,11 +27,10 @@ void read_region(const JsonValue& object, Study& study) {
     study.box = geometry::Box{read_corner(box->at("min")), read_corner(box->at("max"))};
   }
   read_length(object, "margin", study.margin);
-  // Without a kind, what is given tells: an engineer who names a box means it.
+  // Without a kind, what is given tells: a box bounds the domain, and nets named beside it are the nets of interest in it.
   if (!object.find("kind")) {
-    if (study.box && !study.nets.empty()) object.fail("both nets and box are given: add \"kind\": \"nets\" or \"box\"");
-    if (study.box) study.region = RegionKind::box;
     if (!study.nets.empty()) study.region = RegionKind::nets;
+    if (study.box) study.region = RegionKind::box;
   }
   read_choice(object, "kind", region_names, study.region);
 }

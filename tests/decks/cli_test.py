@@ -96,7 +96,6 @@ class Cli(unittest.TestCase):
         for arguments, words in (
             (["mesh", SERPENTINE], ["-o"]),
             (["mesh", SERPENTINE, "-o", self.out / "x.step"], ["formats"]),
-            (["mesh", SERPENTINE, "--nets", "A", "--region", "0,0,1,1", "-o", self.out / "x.msh"], ["--nets", "--region"]),
             (["mesh", SERPENTINE, "--margin", "2furlongs", "-o", self.out / "x.msh"], ["furlongs"]),
             (["mesh", SERPENTINE, "--policy", "best", "-o", self.out / "x.msh"], ["average"]),
             (["mesh", SERPENTINE, "--min-angle", "40", "-o", self.out / "x.msh"], ["angle"]),

@@ -100,6 +100,7 @@ def sheets_on_the_hull(folder):
 
 
 def ports_on_sides(folder):
+    """Guarantee E3 of extrude: a lumped port is its rectangle, recomputed from the file."""
     region = ("--region", "5mm,1mm,15mm,9mm", "--conductors", "hollow")
     file, tags = mesh(folder, "sides.msh", *region, "--port", "L,net=LINE,at=xmin", "--port", "W,net=LINE,at=xmax,kind=wave,width=4mm",
                       "--boundary", "zmin=pec", "--boundary", "ymin=impedance:377")
@@ -113,6 +114,7 @@ def ports_on_sides(folder):
 
 
 def palace_gets_no_chords(folder):
+    """Guarantee T5 of triangulate, on the mesh that was written."""
     region = ("--conductors", "sheet", *PORTS, "--sweep", "1GHz:10GHz:10")
     file, tags = mesh(folder, "plain.msh", *region)
     check_msh(file, tags)

@@ -214,6 +214,21 @@ class Pages(unittest.TestCase):
         b.drag(x + 0.4 * width, y + 0.5 * height, x + 0.6 * width, y + 0.5 * height, 20)
         self.assertGreater(b.run("window.frames_seen"), 2)
 
+    def test_sheets_and_ports_show_and_hide(self):
+        done = run("view", ROOT / "examples/microstrip.json", "--sheet", "LINE", "--port", "P1,net=LINE,at=J1.1", "--no-check", "--quiet", "-o", self.out / "ports.html")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.open("ports")
+        b = self.browser
+        legend = b.run("document.querySelector('#legend').innerText")
+        self.assertIn("sheet|LINE", legend)
+        self.assertIn("port|P1", legend)
+        magenta, copper = (224, 36, 130), COPPER
+        self.assertGreater(share_of(self.canvas(), copper), 0.01, "the sheet lies on the laminate")
+        b.run("[...document.querySelectorAll('#materials label')].filter((l) => !l.textContent.startsWith('copper')).forEach((l) => l.querySelector('input').checked && l.click())")
+        self.assertGreater(share_of(self.canvas(), magenta, 20), 0.0001, "the port stands free")
+        b.run("[...document.querySelectorAll('#tags label')].find((l) => l.textContent.startsWith('port|P1')).click()")
+        self.assertEqual(share_of(self.canvas(), magenta, 20), 0)
+
     def test_keyboard(self):
         self.open("via")
         b = self.browser

@@ -60,9 +60,9 @@ class SkinAgainstVtk(unittest.TestCase):
     def compare(self, board, *options):
         grid = self.read(board, *options)
         self.assertEqual(self.skin(board, *options, "--show-air"), surface(grid), "whole mesh")
-        layers = grid.GetCellData().GetArray("layer_id")
+        layers = grid.GetCellData().GetArray("layer")
         low, high = (int(v) for v in layers.GetRange())
-        per_layer = [surface(threshold(grid, "layer_id", k, k)) for k in range(low, high + 1)]
+        per_layer = [surface(threshold(grid, "layer", k, k)) for k in range(low, high + 1)]
         self.assertEqual(self.skin(board, *options, "--show-air", "--explode", "1"), tuple(map(sum, zip(*per_layer))), "every layer")
         return grid
 
@@ -83,7 +83,7 @@ class SkinAgainstVtk(unittest.TestCase):
         for name in solid:
             k = names.index(name)
             hidden = [h for other in solid if other != name for h in ("--hide", other)]
-            self.assertEqual(self.skin(board, *options, "--show-air", *hidden), surface(threshold(grid, "material_id", k, k)), name)
+            self.assertEqual(self.skin(board, *options, "--show-air", *hidden), surface(threshold(grid, "material", k, k)), name)
 
 
 if __name__ == "__main__":

@@ -137,6 +137,23 @@ TEST(Model, M3_ShapesNameBodies) {
   EXPECT_EQ(broken_model([](auto& p) { p.shapes[0].rings.clear(); }), ErrorCode::internal);
 }
 
+TEST(Model, M4_BodiesOfPortsComeLastAndBelongToPorts) {
+  const auto with_port = [](model::ModelParts& parts) {
+    model::Body footprint = parts.bodies.back();
+    footprint.kind = model::BodyKind::port;
+    parts.bodies.push_back(footprint);
+    parts.ports.push_back({.name = "P1", .body = static_cast<std::int32_t>(parts.bodies.size()) - 1});
+  };
+  EXPECT_NE(broken_model(with_port), ErrorCode::internal) << "a port with its body is sound";
+  EXPECT_EQ(broken_model([&](model::ModelParts& parts) { with_port(parts), parts.ports.clear(); }), ErrorCode::internal);
+  EXPECT_EQ(broken_model([&](model::ModelParts& parts) { with_port(parts), parts.ports[0].body = 0; }), ErrorCode::internal);
+  EXPECT_EQ(broken_model([&](model::ModelParts& parts) {
+              with_port(parts);
+              parts.bodies.push_back(parts.bodies[2]);
+            }),
+            ErrorCode::internal);
+}
+
 TEST(Model, ResolvesByPriority) {
   const model::Model m = model::Model::from_parts(good_model());
   const auto material = [&](std::int32_t slab, std::vector<std::int32_t> present) { return m.resolve(slab, present).material; };
