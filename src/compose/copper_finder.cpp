@@ -89,7 +89,8 @@ bool CopperFinder::covers(std::int32_t layer, std::int32_t net, Point p) const {
 bool CopperFinder::has_plane(std::int32_t layer, std::int32_t net, Point p, double least_width_nm) const {
   return std::ranges::any_of(on_layer(layer), [&](std::int32_t i) {
     const board::Shape& shape = board_.shapes()[static_cast<std::size_t>(i)];
-    if (shape.net != net || !shape_covers(i, p)) return false;
+    const bool is_pad = shape.kind == board::ShapeKind::pad || shape.kind == board::ShapeKind::via;
+    if (is_pad || shape.net != net || !shape_covers(i, p)) return false;
     const geometry::Box& box = boxes_[static_cast<std::size_t>(i)];
     const double width = shape.figure.filled ? static_cast<double>(std::min(box.max.x - box.min.x, box.max.y - box.min.y))
                                              : static_cast<double>(shape.figure.pen);

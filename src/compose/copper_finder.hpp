@@ -30,7 +30,7 @@ class CopperFinder {
   /// Nets with copper at a point of a copper layer, ascending, each once.
   [[nodiscard]] std::vector<std::int32_t> nets_at(std::int32_t layer, geometry::Point p) const;
   [[nodiscard]] bool covers(std::int32_t layer, std::int32_t net, geometry::Point p) const;
-  /// Whether wide copper (fills, polygons, pads and tracks at least this wide) of the net is there.
+  /// Whether wide copper (fills, polygons and tracks at least this wide, no pads) of the net is there.
   [[nodiscard]] bool has_plane(std::int32_t layer, std::int32_t net, geometry::Point p, double least_width_nm) const;
   /// Across the track at a point, else across pad or polygon along the axis in which it is narrower.
   [[nodiscard]] std::optional<Section> section_at(std::int32_t layer, std::int32_t net, geometry::Point p) const;

@@ -31,7 +31,7 @@ def look_at(prefix, what, nets, mode, folder):
     board = next(p for p in sorted((DATA / "kicad").iterdir()) if p.name.startswith(prefix))
     study, mesh = folder / f"{prefix}.study.json", folder / f"{prefix}.msh"
     start = time.process_time()
-    done = run("init", board, "--nets", nets, "--margin", "1mm", "--conductors", mode, "--for", "palace", "-o", study)
+    done = run("init", board, "--nets", nets, "--margin", "1mm", "--conductors", mode, "-o", study, *(() if mode == "solid" else ("--for", "palace")))
     if done.returncode != 0:
         raise SystemExit(f"{done.args}\nexit {done.returncode}\n{done.stdout}{done.stderr}")
     ports = json.loads(study.read_text())["ports"]

@@ -164,10 +164,15 @@ TEST(Ports, EveryFaultIsToldAtOnce) {
 /// Vertices of the graph on the port's line, with which the line must run straight from end to end.
 TEST(Ports, TheOverlayKeepsTheirEdgesStraight) {
   study::Study study;
-  // 0.4 um beside the end of the pad of OTHER in x: without a stiff line the two would snap together at the wrong place.
   study::Port port = at(9 * mm + 400, 5 * mm);
   study.ports = {port};
-  const model::Model model = composed(study);
+  // A corner 8 um beside the line: within the tolerance, so that line and corner become one. The line must not bend.
+  model::ModelParts parts = parts_of(composed(study));
+  const auto other = static_cast<std::int32_t>(std::ranges::find(parts.bodies, "copper OTHER on top", &model::Body::name) -
+                                               parts.bodies.begin());
+  parts.shapes.push_back(
+      {.body = other, .rings = {{{9 * mm + 8400, 5'200'000}, {10 * mm, 4'900'000}, {10 * mm, 5'300'000}}}, .simple = true});
+  const model::Model model = model::Model::from_parts(std::move(parts));
   Diagnostics diagnostics;
   const overlay::OverlayResult result = overlay::overlay(model, {.tolerance_nm = 20'000}, diagnostics);
   double length = 0;
