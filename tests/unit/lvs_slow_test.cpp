@@ -316,7 +316,10 @@ TEST_P(Lvs, EveryDamageIsFoundAsWhatItIs) {
     if (!damage->layer.empty()) {
       EXPECT_EQ(found->layer, damage->layer) << found->text;
     }
-    if (damage->at) {
+    // Of a net in several pieces already, the narrowest gap need not be the new one.
+    const auto whole = std::ranges::find(intact.tags.nets, nets.front(), &validation::Expectation::Net::name);
+    const bool was_whole = damage->code != "net.open" || (whole != intact.tags.nets.end() && whole->pieces == 1);
+    if (damage->at && was_whole) {
       const auto& at = found->places.at(0).at;
       EXPECT_LT(std::hypot(at[0] * 1e3 - static_cast<double>(damage->at->x) * 1e-6,
                            at[1] * 1e3 - static_cast<double>(damage->at->y) * 1e-6),

@@ -278,13 +278,14 @@ class Page {
     const p = this.prisms;
     let sublayer = p.first_sublayer[hit.slab];
     while (sublayer + 1 < p.first_sublayer[hit.slab + 1] && hit.at[2] > p.z[sublayer + 1]) ++sublayer;
+    const height = p.z[sublayer + 1] - p.z[sublayer];
     const group = tables.groups[p.group(hit.slab, hit.t)], material = tables.materials[group.material];
     const tag = hit.kind === "section" ? -1 : p.face_tag(hit.kind, hit.slab, hit.t, hit.a, hit.b);
     return {
-      ...hit, sublayer, prism: p.prism_id(sublayer, hit.t), group: group.name, group_id: group.id,
+      ...hit, sublayer, prism: p.cell_number(hit.slab, sublayer, hit.t), group: group.name, group_id: group.id,
       layer: tables.layers[group.layer].name, material: material.name, net: group.net < 0 ? "none" : tables.nets[group.net].name,
       face_tag: tag < 0 ? "none" : tables.face_tags[tag].name, face_tag_id: tag < 0 ? null : tables.face_tags[tag].id,
-      q_p: p.prism_quality(hit.slab, hit.t), q_t: p.triangle_quality(hit.t), longest_mm: p.longest[hit.t], height_mm: p.height(hit.slab), eps_r: material.eps_r,
+      q_p: p.prism_quality(hit.slab, hit.t, height), q_t: p.triangle_quality(hit.t), longest_mm: p.longest[hit.t], height_mm: height, eps_r: material.eps_r,
     };
   }
   show_pick(hit) {

@@ -108,27 +108,30 @@ export class Prisms {
   triangle_quality(t) {
     return (4 * Math.sqrt(3) * this.area[t]) / this.beta[t];
   }
-  prism_quality(slab, t) {
-    const h = this.height(slab), sum = this.beta[t] + h * h;
+  prism_quality(slab, t, h = this.height(slab)) {
+    const sum = this.beta[t] + h * h;
     return ((32 * Math.sqrt(3)) / 3) * ((this.area[t] * h) / (sum * Math.sqrt(sum)));
   }
 
-  /// Id of a prism as it is written: dense, ascending by sub-layer and triangle.
-  prism_id(sublayer, t) {
-    let id = 0;
-    for (let s = 0, k = 0; s < this.num_slabs; ++s) {
-      let solid = 0, before = 0;
+  /// Number of a prism among the cells of every mesh file of the run, from 0 (mesh::MeshSource, PrismSource): group after group,
+  /// in a group slab after slab, in a slab 512 triangles through all its sub-layers at a time.
+  cell_number(slab, sublayer, t) {
+    const at_once = 512, group = this.group(slab, t);
+    let number = 0, rank = 0, total = 0;
+    for (let s = 0; s < this.num_slabs; ++s) {
+      const cuts = this.num_cuts(s);
       for (let u = 0; u < this.num_triangles; ++u) {
-        if (this.group(s, u) < 0) continue;
-        ++solid;
-        if (u < t) ++before;
-      }
-      for (; k < this.first_sublayer[s + 1]; ++k) {
-        if (k === sublayer) return id + before;
-        id += solid;
+        const other = this.group(s, u);
+        if (other < 0) continue;
+        if (other < group || (other === group && s < slab)) number += cuts;
+        if (other === group && s === slab) {
+          ++total;
+          if (u < t) ++rank;
+        }
       }
     }
-    return -1;
+    const first = rank - (rank % at_once), size = Math.min(at_once, total - first);
+    return number + first * this.num_cuts(slab) + (sublayer - this.first_sublayer[slab]) * size + (rank - first);
   }
 
   /// Face tag of a boundary face, or -1. kind: "up", "down" or "wall" (a -> b).
