@@ -38,7 +38,7 @@ model::SideCondition side_condition(const study::Boundary& boundary) {
       return {model::SideKind::impedance, boundary.ohms};
     case study::BoundaryKind::none:
     case study::BoundaryKind::automatic:  // resolved before
-    case study::BoundaryKind::periodic:  // refused by study::check
+    case study::BoundaryKind::periodic:   // refused by study::check
       break;
   }
   return {};
