@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "pcbmesh/base/error.hpp"
@@ -12,6 +13,7 @@
 #include "pcbmesh/pipeline/write_outputs.hpp"
 #include "pcbmesh/view/render.hpp"
 #include "src/cli/commands.hpp"
+#include "src/cli/mesh_input.hpp"
 #include "src/cli/mesh_or_draw.hpp"
 #include "src/cli/picture_options.hpp"
 #include "src/cli/study_options.hpp"
@@ -50,22 +52,25 @@ int run(const Options& options) {
   const study::Study study = study_from(*options.study);
   const Progress progress = terminal_progress(options.quiet);
   progress.at("read", 0);
-  const formats::ReadBoardResult read = formats::read_board(options.board, options.from, progress);
-  const pipeline::MeshBoardResult result = mesh_or_draw(read.board, study, options.output, progress);
+  std::optional<mesh::PrismMesh> mesh = read_if_mesh(options.board, progress);
+  if (!mesh) {
+    const formats::ReadBoardResult read = formats::read_board(options.board, options.from, progress);
+    mesh = mesh_or_draw(read.board, study, options.output, progress).mesh;
+  }
   progress.at("draw", 0);
-  const std::string picture = draw(options, result.mesh, ending);
+  const std::string picture = draw(options, *mesh, ending);
   clear_progress();
   pipeline::write_binary_file(options.output, picture);
   if (options.json) {
-    const view::SkinCount faces = view::count_skin(result.mesh, picture_options(*options.picture, result.mesh).visibility);
+    const view::SkinCount faces = view::count_skin(*mesh, picture_options(*options.picture, *mesh).visibility);
     fmt::print("{}\n", nlohmann::ordered_json{{"picture", options.output},
                                               {"bytes", picture.size()},
-                                              {"prisms", result.mesh.num_prisms()},
+                                              {"prisms", mesh->num_prisms()},
                                               {"visible_triangles", faces.num_triangles},
                                               {"visible_quads", faces.num_quads}}
                            .dump(2));
   } else if (!options.quiet)
-    fmt::print("{}: {} prisms, {} bytes\n", options.output, grouped(result.mesh.num_prisms()),
+    fmt::print("{}: {} prisms, {} bytes\n", options.output, grouped(mesh->num_prisms()),
                grouped(static_cast<std::int64_t>(picture.size())));
   return 0;
 }
@@ -75,7 +80,7 @@ int run(const Options& options) {
 Command add_render_command(CLI::App& program) {
   CLI::App* command = program.add_subcommand("render", "Draw a board's mesh: PNG, or SVG (--view top: true vectors)");
   auto options = std::make_shared<Options>();
-  command->add_option("board", options->board, "Board file, as for mesh")->required();
+  command->add_option("board", options->board, "Board file, as for mesh; or a .pcbmesh file")->required();
   command->add_option("-o,--output", options->output, "Picture: .png or .svg")->required();
   command->add_option("--title", options->title, "Title of an SVG");
   command->add_option("--from", options->from, "Format of the board (default: by content and name)");

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "pcbmesh/base/error.hpp"
 #include "pcbmesh/formats/registry.hpp"
@@ -11,6 +12,7 @@
 #include "pcbmesh/pipeline/write_outputs.hpp"
 #include "pcbmesh/view/report.hpp"
 #include "src/cli/commands.hpp"
+#include "src/cli/mesh_input.hpp"
 #include "src/cli/mesh_or_draw.hpp"
 #include "src/cli/page_contents.hpp"
 #include "src/cli/study_options.hpp"
@@ -26,6 +28,27 @@ struct Options {
   std::shared_ptr<StudyOptions> study;
 };
 
+/// The page of a mesh file: what the mesh itself tells, and its check.
+int run_mesh(const Options& options, const mesh::PrismMesh& mesh, const Progress& progress) {
+  view::PageContents contents{.title = std::filesystem::path(options.board).stem().string(), .source = options.board};
+  contents.quality = layering::quality_report(mesh);
+  contents.facts = {{"prisms", grouped(mesh.num_prisms())}, {"nodes", grouped(mesh.num_nodes())}};
+  if (!options.no_check) {
+    progress.at("check", 0);
+    const validation::Report report = validation::check(pipeline::expand(mesh), nullptr, {options.threads});
+    contents.passed = report.passed();
+    contents.places = view::places_of(report, 1.0);
+  }
+  for (view::PagePlace& place : view::places_of(contents.quality)) contents.places.push_back(std::move(place));
+  const std::string page = view::report_html(mesh, contents);
+  clear_progress();
+  pipeline::write_binary_file(options.output, page);
+  if (!options.quiet)
+    fmt::print("{}: {} prisms, {} bytes; open it in a browser\n", options.output, grouped(mesh.num_prisms()),
+               grouped(static_cast<std::int64_t>(page.size())));
+  return contents.passed.value_or(true) ? 0 : 1;
+}
+
 int run(const Options& options) {
   const std::string ending = std::filesystem::path(options.output).extension().string();
   if (ending != ".html" && ending != ".htm")
@@ -33,6 +56,7 @@ int run(const Options& options) {
   const study::Study study = study_from(*options.study);
   const Progress progress = terminal_progress(options.quiet);
   progress.at("read", 0);
+  if (const auto mesh = read_if_mesh(options.board, progress)) return run_mesh(options, *mesh, progress);
   const formats::ReadBoardResult read = formats::read_board(options.board, options.from, progress);
   pipeline::MeshBoardResult result = mesh_or_draw(read.board, study, options.output, progress);
   Diagnostics all = read.diagnostics;
@@ -60,7 +84,7 @@ int run(const Options& options) {
 Command add_view_command(CLI::App& program) {
   CLI::App* command = program.add_subcommand("view", "Mesh a board into one HTML page: 3D view, findings, quality");
   auto options = std::make_shared<Options>();
-  command->add_option("board", options->board, "Board file, as for mesh")->required();
+  command->add_option("board", options->board, "Board file, as for mesh; or a .pcbmesh file")->required();
   command->add_option("-o,--output", options->output, "The page, .html: one file, no network")->required();
   command->add_option("--from", options->from, "Format of the board (default: by content and name)");
   command->add_flag("--no-check", options->no_check, "Do not judge the mesh");

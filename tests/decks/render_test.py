@@ -107,6 +107,18 @@ class Pictures(unittest.TestCase):
         self.assertTrue(next(tree.iter(f"{SVG}image")).get("href").startswith("data:image/png;base64,"))
         self.assertIn("Prism quality q_p", [t.text for t in tree.iter(f"{SVG}text")])
 
+    def test_a_native_mesh_gives_the_picture_of_its_board(self):
+        done = run("mesh", *VIA, "-o", self.out / "x.pcbmesh", "-o", self.out / "x.msh", "--quiet")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(self.draw(self.out / "x.pcbmesh", name="mesh.png"), self.draw(*VIA, name="board.png"))
+        done = run("view", self.out / "x.pcbmesh", "-o", self.out / "x.html")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("DecompressionStream", (self.out / "x.html").read_text())
+        done = run("view", self.out / "x.msh", "-o", self.out / "y.html")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn(".pcbmesh", done.stderr)
+        self.assertFalse((self.out / "y.html").exists())
+
     def test_usage(self):
         for arguments, words in (((*VIA, "-o", self.out / "x.jpg"), ".png or .svg"), ((*VIA, "-o", self.out / "x.png", "--view", "up"), "iso"),
                                  ((*VIA, "-o", self.out / "x.png", "--colour", "red"), "q_p"), ((*VIA, "-o", self.out / "x.png", "--size", "9x9"), "16"),
