@@ -8,6 +8,7 @@
 #include <numbers>
 #include <string>
 
+#include "folder.hpp"
 #include "formats/native_json/format.hpp"
 #include "pcbmesh/base/error.hpp"
 #include "pcbmesh/compose/compose.hpp"
@@ -88,7 +89,8 @@ validation::Report checked(const Board& board, const std::string& members, doubl
   study.policy = study::HeightPolicy::none;
   study.sublayers = study::SublayerRule::none;
   const pipeline::MeshBoardResult result = pipeline::mesh_board(board, study);
-  const std::string file = ::testing::TempDir() + "fabrication.msh";
+  const testing::Folder folder;  // tests run side by side
+  const std::string file = (folder / "fabrication.msh").string();
   const pipeline::OutputResult written = pipeline::write_outputs(result, {{file}, "", {}, true, 1}, Progress{});
   if (copper_mm3 != nullptr) {
     *copper_mm3 = 0;

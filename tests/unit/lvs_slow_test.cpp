@@ -10,6 +10,7 @@
 #include <random>
 #include <set>
 
+#include "folder.hpp"
 #include "formats/tags_json/tags_json.hpp"
 #include "pcbmesh/formats/registry.hpp"
 #include "pcbmesh/geometry/polygon_sets.hpp"
@@ -266,7 +267,8 @@ struct Meshed {
 
 Meshed meshed(const Board& board, const study::Study& study) {
   const pipeline::MeshBoardResult result = pipeline::mesh_board(board, study);
-  const std::string file = ::testing::TempDir() + "lvs.tags.json";
+  const testing::Folder folder;  // tests run side by side
+  const std::string file = (folder / "lvs.tags.json").string();
   formats::tags_json::write_tags(result.mesh, file, LengthUnit::metre);
   return {pipeline::expand(result.mesh), validation::read_expectation(file)};
 }
