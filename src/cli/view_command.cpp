@@ -28,6 +28,17 @@ struct Options {
   std::shared_ptr<StudyOptions> study;
 };
 
+void write_page(const Options& options, const mesh::PrismMesh& mesh, const view::PageContents& contents,
+                const Progress& progress) {
+  progress.at("view", 0);
+  const std::string page = view::report_html(mesh, contents);
+  clear_progress();
+  pipeline::write_binary_file(options.output, page);
+  if (!options.quiet)
+    fmt::print("{}: {} prisms, {} bytes; open it in a browser\n", options.output, grouped(mesh.num_prisms()),
+               grouped(static_cast<std::int64_t>(page.size())));
+}
+
 /// The page of a mesh file: what the mesh itself tells, and its check.
 int run_mesh(const Options& options, const mesh::PrismMesh& mesh, const Progress& progress) {
   view::PageContents contents{.title = std::filesystem::path(options.board).stem().string(), .source = options.board};
@@ -40,12 +51,7 @@ int run_mesh(const Options& options, const mesh::PrismMesh& mesh, const Progress
     contents.places = view::places_of(report, 1.0);
   }
   for (view::PagePlace& place : view::places_of(contents.quality)) contents.places.push_back(std::move(place));
-  const std::string page = view::report_html(mesh, contents);
-  clear_progress();
-  pipeline::write_binary_file(options.output, page);
-  if (!options.quiet)
-    fmt::print("{}: {} prisms, {} bytes; open it in a browser\n", options.output, grouped(mesh.num_prisms()),
-               grouped(static_cast<std::int64_t>(page.size())));
+  write_page(options, mesh, contents, progress);
   return contents.passed.value_or(true) ? 0 : 1;
 }
 
@@ -69,13 +75,7 @@ int run(const Options& options) {
     report = validation::check(pipeline::expand(result.mesh), nullptr, {options.threads});
     mesh_run.check = &report;
   }
-  progress.at("view", 0);
-  const std::string page = view::report_html(result.mesh, page_contents(mesh_run, 1.0));
-  clear_progress();
-  pipeline::write_binary_file(options.output, page);
-  if (!options.quiet)
-    fmt::print("{}: {} prisms, {} bytes; open it in a browser\n", options.output, grouped(result.mesh.num_prisms()),
-               grouped(static_cast<std::int64_t>(page.size())));
+  write_page(options, result.mesh, page_contents(mesh_run, 1.0), progress);
   return mesh_run.check != nullptr && !report.passed() ? 1 : 0;
 }
 

@@ -9,6 +9,7 @@
 #include "pcbmesh/base/error.hpp"
 #include "pcbmesh/layering/choose_layers.hpp"
 #include "pcbmesh/layering/divide_layers.hpp"
+#include "pcbmesh/layering/match_quality.hpp"
 #include "pcbmesh/layering/prism_quality.hpp"
 
 namespace pcbmesh::pipeline {
@@ -18,9 +19,8 @@ std::size_t index(std::int32_t i) {
   return static_cast<std::size_t>(i);
 }
 
-/// Area of a triangle that refinement leaves alone, over the square of the bound on its edges. Source: measured for
-/// CGAL's mesher, docs/evidence/paper.md.
-constexpr double area_over_edge_squared = 0.198;
+/// Area of a triangle where the bound on edges, not the features, decides, over the square of the bound.
+constexpr double area_over_edge_squared = layering::TriangleShape{}.area;
 
 /// Triangles and heights to come.
 struct PlaneForecast {

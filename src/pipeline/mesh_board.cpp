@@ -20,9 +20,8 @@ namespace {
 constexpr double speed_of_light_m_per_s = 299'792'458.0;
 /// Longest edge where the study names neither a length nor a frequency: the paper's 2 mm.
 constexpr Nm default_longest_edge_nm = 2 * nm_per_mm;
-/// Area of an average triangle over the square of the longest edge where the bound, not the features, decides.
-/// Source: measured for CGAL's mesher, docs/evidence/paper.md.
-constexpr double area_over_edge_squared = 0.198;
+/// Area of a triangle where the bound on edges, not the features, decides, over the square of the bound.
+constexpr double area_over_edge_squared = layering::TriangleShape{}.area;
 
 double cpu_seconds() {
   timespec now{};

@@ -167,6 +167,13 @@ class Cli(unittest.TestCase):
         self.assertEqual(target.read_text(), "old")
         self.assertEqual([name for name in self.leftovers() if name.endswith(".part")], [])
 
+    def test_a_mesh_that_is_a_folder_is_written_and_certified(self):
+        done = run("mesh", SERPENTINE, "-o", self.out / "a.elmer")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        certificate = json.loads((self.out / "a.certificate.json").read_text())
+        self.assertIn("a.elmer", [file["name"] for file in certificate["files"]])
+        self.assertTrue((self.out / "a.elmer/mesh.header").exists())
+
     def test_same_input_same_bytes(self):
         for name in ("a", "b"):
             run("mesh", SERPENTINE, "-o", self.out / f"{name}.msh", "--threads", "1" if name == "a" else "3")

@@ -142,6 +142,12 @@ TEST(Sha256, IsTheOneOfTheStandard) {
   EXPECT_EQ(sha256_of_file(write_file(folder.path() / "c", std::string(1'000'000, 'a'))),
             "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
   EXPECT_THROW((void)sha256_of_file(folder.path() / "nothing"), Error);
+  // A folder: `(cd d; sha256sum a b) | sha256sum`, whatever order the files were made in.
+  std::filesystem::create_directory(folder.path() / "d");
+  write_file(folder.path() / "d" / "b", "");
+  write_file(folder.path() / "d" / "a", "abc");
+  const std::string list = sha256_of_file(folder.path() / "a") + "  a\n" + sha256_of_file(folder.path() / "b") + "  b\n";
+  EXPECT_EQ(sha256_of_file(folder.path() / "d"), sha256_of_file(write_file(folder.path() / "list", list)));
 }
 
 TEST(Certificate, HoldsForItsMeshAndForNoOther) {
