@@ -69,28 +69,7 @@ void write_rows_of(FileSink& sink, std::int32_t tag, std::int64_t id, std::span<
 }
 
 void write_rows_binary(FileSink& sink, const mesh::ElementBlock& block, std::int64_t id, std::span<const std::int64_t> nodes) {
-  switch (mesh::nodes_of(block.kind)) {
-    case 3:
-      return write_rows_of<3>(sink, block.tag, id, nodes);
-    case 4:
-      return write_rows_of<4>(sink, block.tag, id, nodes);
-    case 5:
-      return write_rows_of<5>(sink, block.tag, id, nodes);
-    case 6:
-      return write_rows_of<6>(sink, block.tag, id, nodes);
-    case 8:
-      return write_rows_of<8>(sink, block.tag, id, nodes);
-    case 9:
-      return write_rows_of<9>(sink, block.tag, id, nodes);
-    case 10:
-      return write_rows_of<10>(sink, block.tag, id, nodes);
-    case 15:
-      return write_rows_of<15>(sink, block.tag, id, nodes);
-    case 18:
-      return write_rows_of<18>(sink, block.tag, id, nodes);
-    default:
-      report_bug("known width of an element", __FILE__, __LINE__);
-  }
+  with_width(block.kind, [&]<std::size_t width>() { write_rows_of<width>(sink, block.tag, id, nodes); });
 }
 
 void write_rows_text(FileSink& sink, const mesh::ElementBlock& block, std::int64_t id, std::span<const std::int64_t> nodes) {

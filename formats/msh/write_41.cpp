@@ -125,30 +125,8 @@ void write_rows_text(FileSink& sink, std::size_t width, std::int64_t tag, std::s
 }
 
 void write_rows(const WriteJob& job, mesh::ElementKind kind, std::int64_t tag, std::span<const std::int64_t> nodes) {
-  const int width = mesh::nodes_of(kind);
-  if (!job.binary) return write_rows_text(job.sink, static_cast<std::size_t>(width), tag, nodes);
-  switch (width) {
-    case 3:
-      return write_rows_binary<3>(job.sink, tag, nodes);
-    case 4:
-      return write_rows_binary<4>(job.sink, tag, nodes);
-    case 5:
-      return write_rows_binary<5>(job.sink, tag, nodes);
-    case 6:
-      return write_rows_binary<6>(job.sink, tag, nodes);
-    case 8:
-      return write_rows_binary<8>(job.sink, tag, nodes);
-    case 9:
-      return write_rows_binary<9>(job.sink, tag, nodes);
-    case 10:
-      return write_rows_binary<10>(job.sink, tag, nodes);
-    case 15:
-      return write_rows_binary<15>(job.sink, tag, nodes);
-    case 18:
-      return write_rows_binary<18>(job.sink, tag, nodes);
-    default:
-      report_bug("known width of an element", __FILE__, __LINE__);
-  }
+  if (!job.binary) return write_rows_text(job.sink, static_cast<std::size_t>(mesh::nodes_of(kind)), tag, nodes);
+  with_width(kind, [&]<std::size_t known>() { write_rows_binary<known>(job.sink, tag, nodes); });
 }
 
 void write_elements(const WriteJob& job, Meter& meter) {

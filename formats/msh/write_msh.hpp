@@ -13,6 +13,7 @@
 
 #include "formats/sink/file_sink.hpp"
 #include "formats/sink/meter.hpp"
+#include "pcbmesh/base/error.hpp"
 #include "pcbmesh/base/progress.hpp"
 #include "pcbmesh/formats/registry.hpp"
 #include "pcbmesh/mesh/mesh_source.hpp"
@@ -23,6 +24,33 @@ namespace pcbmesh::formats::msh {
 [[nodiscard]] constexpr std::int32_t gmsh_type(mesh::ElementKind kind) {
   constexpr std::int32_t types[] = {2, 3, 4, 7, 6, 5, 9, 16, 10, 11, 18, 13};
   return types[static_cast<int>(kind)];
+}
+
+/// Calls use.operator()<width>() for the width of an element kind, so that rows are written with a width the compiler knows.
+template <class Use>
+void with_width(mesh::ElementKind kind, Use&& use) {
+  switch (mesh::nodes_of(kind)) {
+    case 3:
+      return use.template operator()<3>();
+    case 4:
+      return use.template operator()<4>();
+    case 5:
+      return use.template operator()<5>();
+    case 6:
+      return use.template operator()<6>();
+    case 8:
+      return use.template operator()<8>();
+    case 9:
+      return use.template operator()<9>();
+    case 10:
+      return use.template operator()<10>();
+    case 15:
+      return use.template operator()<15>();
+    case 18:
+      return use.template operator()<18>();
+    default:
+      report_bug("known width of an element", __FILE__, __LINE__);
+  }
 }
 
 /// Everything the two versions' writers need; one per file.
