@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "formats/dolfinx/format.hpp"
 #include "formats/elmer_deck/format.hpp"
 #include "formats/getdp/format.hpp"
 #include "formats/palace/format.hpp"
@@ -14,7 +15,8 @@ namespace pcbmesh::formats {
 namespace {
 
 // The table: a new solver is one include above and one entry here.
-constexpr std::array<const DeckFormat*, 3> deck_table{&getdp::deck_format, &palace::deck_format, &elmer_deck::deck_format};
+constexpr std::array<const DeckFormat*, 4> deck_table{&getdp::deck_format, &palace::deck_format, &elmer_deck::deck_format,
+                                                      &dolfinx::deck_format};
 
 }  // namespace
 

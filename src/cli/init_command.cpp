@@ -12,6 +12,7 @@
 #include "pcbmesh/formats/registry.hpp"
 #include "pcbmesh/pipeline/start_study.hpp"
 #include "pcbmesh/pipeline/write_outputs.hpp"
+#include "pcbmesh/study/solver_needs.hpp"
 #include "src/cli/commands.hpp"
 #include "src/cli/study_options.hpp"
 #include "src/cli/terminal.hpp"
@@ -62,6 +63,8 @@ int run_init(const Options& options) {
   if (!study.sweep && study.problem == study::Problem::driven) study.sweep = study::Sweep{1e8, 1e10, 100, {}};
   pipeline::StartedStudy started = started_from(options, std::move(study));
   started.study.solver = solver;
+  if (options.study->split.empty() && study::needs_tetrahedra(started.study))
+    started.study.split = study::ElementSplit::tetrahedra;
   study::check(started.study);
   const std::string note = fmt::format(
       "Begun for nets {}. Ports were placed where pins and planes allow; every field is explained in study.schema.json. Mesh "

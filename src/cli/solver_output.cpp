@@ -9,6 +9,7 @@
 
 #include "formats/deck/field_problem.hpp"
 #include "pcbmesh/base/error.hpp"
+#include "pcbmesh/formats/registry.hpp"
 
 namespace pcbmesh::cli {
 namespace {
@@ -52,11 +53,15 @@ void prepare_for_solver(const study::Study& study, const std::string& board, pip
                 fmt::format("{} reads {}, not {}; leave --to out", solver.name, solver.mesh.format, output.format));
   std::filesystem::path& mesh = output.meshes.front();
   if (means_folder(mesh)) {
-    std::error_code fault;
-    std::filesystem::create_directories(mesh, fault);
-    if (fault) throw Error(ErrorCode::write_failed, "the folder can't be made: " + fault.message(), {.file = mesh.string()});
+    output.makes_folder = true;
     mesh /= board_stem(board) + std::string(solver.mesh.ending);
   }
+  const formats::MeshFormat* format = formats::find_mesh_format(mesh, output.format);
+  if (format != nullptr && format->name != solver.mesh.format)
+    throw Error(ErrorCode::usage,
+                fmt::format("{} reads {}, not {}; name a file with the ending {}, or a folder", solver.name, solver.mesh.format,
+                            format->name, solver.mesh.ending),
+                {.file = mesh.string()});
   output.write.version = solver.mesh.version;
   output.write.binary = output.write.binary && solver.mesh.binary;
   output.write.one_number_space = solver.mesh.one_number_space;

@@ -13,6 +13,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "tests/deck
 from program import PROGRAM, ROOT, run  # noqa: E402,F401
 
 MM = 1e-3
+ENDINGS = {"dolfinx": ".vtkhdf", "mfem": ".mesh"}
 
 
 def has_getdp():
@@ -25,7 +26,7 @@ class Solved:
     def __init__(self, folder, name, report, log, cpu_s):
         self.folder, self.name, self.report, self.cpu_s = folder, name, report, cpu_s
         self.prisms = report["counts"]["prisms"]
-        self.unknowns = max([int(n) for n in re.findall(r": (\d+) Dofs", log)], default=0)
+        self.unknowns = max([int(n) for n in re.findall(r"(\d+) (?:Dofs|unknowns)", log)], default=0)
 
     def touchstone(self):
         """[(hz, S as rows)] of the Touchstone file."""
@@ -68,7 +69,7 @@ def solve(board, study, folder, solver="getdp", arguments=()):
     name = board["name"]
     (folder / f"{name}.json").write_text(json.dumps(board, indent=1))
     (folder / f"{name}.study.json").write_text(json.dumps(study, indent=1))
-    meshed = run("mesh", folder / f"{name}.json", "--study", folder / f"{name}.study.json", "--for", solver, "-o", folder / f"{name}.msh", *arguments)
+    meshed = run("mesh", folder / f"{name}.json", "--study", folder / f"{name}.study.json", "--for", solver, "-o", folder / f"{name}{ENDINGS.get(solver, '.msh')}", *arguments)
     if meshed.returncode != 0:
         raise RuntimeError(f"{name}: {meshed.stderr}{meshed.stdout}")
     report = json.loads((folder / f"{name}.report.json").read_text())
