@@ -20,6 +20,12 @@ def has_getdp():
     return shutil.which("getdp") is not None
 
 
+def has_dolfinx():
+    """Debian keeps dolfinx for complex numbers where no interpreter looks by itself."""
+    asked = subprocess.run([sys.executable, "-c", "import dolfinx, h5py"], env={"PETSC_DIR": "/usr/lib/petscdir/petsc-complex", **os.environ}, capture_output=True)
+    return asked.returncode == 0
+
+
 class Solved:
     """One mesh that was solved: its counts, the unknowns, CPU seconds of the solver, and the folder."""
 
@@ -62,7 +68,7 @@ class Solved:
         return sorted(float(row[1]) for row in rows if len(row) > 1)
 
 
-def solve(board, study, folder, solver="getdp", arguments=()):
+def solve(board, study, folder, solver="getdp", arguments=(), environment=None):
     """Meshes `board` for `study` (dictionaries as in their JSON files), runs the one command that pcbmesh prints, reads what comes of it."""
     folder = pathlib.Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
@@ -75,7 +81,7 @@ def solve(board, study, folder, solver="getdp", arguments=()):
     report = json.loads((folder / f"{name}.report.json").read_text())
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     command = meshed.stdout.strip().splitlines()[-1].strip()
-    done = subprocess.run(command, shell=True, capture_output=True, text=True, env={**os.environ, "PCBMESH": str(PROGRAM), "OMP_NUM_THREADS": "1"})
+    done = subprocess.run(command, shell=True, capture_output=True, text=True, env={**os.environ, "PCBMESH": str(PROGRAM), "OMP_NUM_THREADS": "1", **(environment or {})})
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     (folder / f"{name}.log").write_text(done.stdout + done.stderr)
     if done.returncode != 0:
