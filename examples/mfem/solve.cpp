@@ -38,7 +38,7 @@ struct Face {
 struct Port {
   std::string name;
   double impedance = 50, length = 0, width = 0;
-  mfem::Vector direction{3};
+  mfem::Vector direction = mfem::Vector(3);
   bool is_excited = true;
 };
 struct Net {

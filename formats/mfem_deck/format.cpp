@@ -128,7 +128,7 @@ Deck write(const mesh::PrismMesh& mesh, const DeckOptions& options, const std::f
 constinit const DeckFormat deck_format{
     "mfem",
     "MFEM: named attribute sets and a driver in C++: full wave by edge elements on prisms, capacitances; ends in Touchstone",
-    {.format = "mfem", .version = "", .ending = ".mesh", .binary = true, .one_number_space = false, .tetrahedra = false},
+    {.format = "mfem", .version = "1.3", .ending = ".mesh", .binary = true, .one_number_space = false, .tetrahedra = false},
     &require,
     &write};
 

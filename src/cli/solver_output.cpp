@@ -45,9 +45,10 @@ bool writes_deck(const study::Study& study) {
 void prepare_for_solver(const study::Study& study, const std::string& board, pipeline::OutputOptions& output) {
   if (!writes_deck(study) || output.meshes.empty()) return;
   const formats::DeckFormat& solver = formats::find_deck_format(study::name_of(study.solver));
-  if (!output.write.version.empty() && output.write.version != solver.mesh.version)
-    throw Error(ErrorCode::usage, fmt::format("{} reads version {} of its mesh, not {}; leave --msh-version out", solver.name,
-                                              solver.mesh.version, output.write.version));
+  std::string& version = solver.mesh.format == "mfem" ? output.write.mfem_version : output.write.version;
+  if (!version.empty() && version != solver.mesh.version)
+    throw Error(ErrorCode::usage, fmt::format("{} reads version {} of its mesh, not {}; leave --{}-version out", solver.name,
+                                              solver.mesh.version, version, solver.mesh.format));
   if (!output.format.empty() && output.format != solver.mesh.format)
     throw Error(ErrorCode::usage,
                 fmt::format("{} reads {}, not {}; leave --to out", solver.name, solver.mesh.format, output.format));
@@ -62,7 +63,7 @@ void prepare_for_solver(const study::Study& study, const std::string& board, pip
                 fmt::format("{} reads {}, not {}; name a file with the ending {}, or a folder", solver.name, solver.mesh.format,
                             format->name, solver.mesh.ending),
                 {.file = mesh.string()});
-  output.write.version = solver.mesh.version;
+  version = solver.mesh.version;
   output.write.binary = output.write.binary && solver.mesh.binary;
   output.write.one_number_space = solver.mesh.one_number_space;
 }

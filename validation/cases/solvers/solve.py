@@ -36,7 +36,7 @@ class Solved:
 
     def touchstone(self):
         """[(hz, S as rows)] of the Touchstone file."""
-        file = next(self.folder.glob(f"{self.name}.s*p"))
+        file = next(self.folder.glob(f"{self.name}.s[0-9]*p"))
         ports = int(file.suffix[2:-1])
         numbers = [float(word) for line in file.read_text().splitlines() if line and line[0] not in "!#" for word in line.split()]
         width = 1 + 2 * ports * ports
