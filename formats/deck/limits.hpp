@@ -9,11 +9,11 @@ namespace pcbmesh::formats::deck {
 
 /// What a deck can say of the things on which solvers differ.
 struct Limits {
-  std::string_view solver;         ///< as people write it
-  bool solid_copper = true;        ///< drops unknowns by volume; the others set conditions on tagged faces, and solid copper has none
-  bool wave_ports = false;         ///< in driven problems
-  bool lossy_resonances = false;   ///< boundaries that make the eigenvalue problem non-linear
-  bool floating_skins = false;     ///< electrostatic: hollow copper without a net
+  std::string_view solver;   ///< as people write it
+  bool solid_copper = true;  ///< drops unknowns by volume; the others set conditions on tagged faces, and solid copper has none
+  bool wave_ports = false;   ///< in driven problems
+  bool lossy_resonances = false;  ///< boundaries that make the eigenvalue problem non-linear
+  bool floating_skins = false;    ///< electrostatic: hollow copper without a net
 };
 
 /// state(), held against what the solver can do. @throws as state(); Error format_limit (703) with the nearest it can do.

@@ -37,8 +37,7 @@ std::string face_line(const deck::Face& face) {
       return out + fmt::format(" {}", face.port);
     case mesh::BoundaryCondition::absorbing:
       out += fmt::format(" {}", face.media.size());
-      for (const deck::Medium& medium : face.media)
-        out += fmt::format("  {} {}", medium.z_high_m, material(medium.material));
+      for (const deck::Medium& medium : face.media) out += fmt::format("  {} {}", medium.z_high_m, material(medium.material));
       return out;
     default:
       return out;
@@ -58,7 +57,8 @@ std::string named(const Groups& groups, const std::vector<std::int32_t>& ids) {
 std::string problem_text(const deck::FieldProblem& problem, const std::string& results) {
   const DeckOptions& options = problem.options;
   std::string out = fmt::format(
-      "# A field problem for MFEM, written by pcbmesh. Materials: eps_r, tan delta, mu_r, S/m.\nproblem {}\nmesh {}\nunit_m {}\n"
+      "# A field problem for MFEM, written by pcbmesh. Materials: eps_r, tan delta, mu_r, S/m.\nproblem {}\nmesh {}\nunit_m "
+      "{}\n"
       "result {}\n",
       study::name_of(options.problem), in_quotes(options.mesh), metres_per(options.unit), in_quotes(results));
   if (options.problem == Problem::driven)
@@ -71,8 +71,8 @@ std::string problem_text(const deck::FieldProblem& problem, const std::string& r
   for (const deck::Face& face : problem.faces) out += face_line(face) + "\n";
   for (const deck::FieldPort& port : problem.ports) {
     const mesh::Port& p = port.port;
-    out += fmt::format("port {} {} {} {}  {} {} {}  {}\n", in_quotes(deck::plain(p.name)), p.impedance_ohm, p.length_m, p.width_m,
-                       p.direction[0], p.direction[1], p.direction[2], p.is_excited ? 1 : 0);
+    out += fmt::format("port {} {} {} {}  {} {} {}  {}\n", in_quotes(deck::plain(p.name)), p.impedance_ohm, p.length_m,
+                       p.width_m, p.direction[0], p.direction[1], p.direction[2], p.is_excited ? 1 : 0);
   }
   for (const deck::Conductor& conductor : problem.conductors)
     out += fmt::format("net {}{}{}\n", in_quotes(deck::plain(conductor.name)), named(problem.volumes, conductor.volumes),
@@ -106,17 +106,18 @@ Deck write(const mesh::PrismMesh& mesh, const DeckOptions& options, const std::f
   const std::string source = deck::shell_word(stem + ".solve.cpp"), program = deck::shell_word("./" + stem + ".solve");
   deck::put_run_script(
       folder / (stem + ".run.sh"),
-      fmt::format("Compiles the driver and solves {} with MFEM; ends in {}. MFEM_DIR: where MFEM was built or installed; ORDER: of "
-                  "the elements; PCBMESH: where that is.",
-                  deck::plain(options.mesh), deck::plain(results.final)),
       fmt::format(
-          "config=\"${{MFEM_DIR:-/usr}}/config/config.mk\"\n[ -f \"$config\" ] || "
-          "config=\"${{MFEM_DIR:-/usr}}/share/mfem/config.mk\"\n"
-          "if [ ! -f \"$config\" ]; then\n  echo \"MFEM is not found: set MFEM_DIR to the folder where it was built or "
-          "installed\" >&2\n  exit 1\nfi\n"
-          "printf 'include %s\\nall:\\n\\t$(MFEM_CXX) $(MFEM_FLAGS) %s -o %s $(MFEM_LIBS)\\n' \"$config\" {0} {1} | make -s -f - "
-          "all\n{1} {2} \"${{ORDER:-1}}\"\n{3}",
-          source, program, deck::shell_word(stem + ".problem.txt"), results.after),
+          "Compiles the driver and solves {} with MFEM; ends in {}. MFEM_DIR: where MFEM was built or installed; ORDER: of "
+          "the elements; PCBMESH: where that is.",
+          deck::plain(options.mesh), deck::plain(results.final)),
+      fmt::format("config=\"${{MFEM_DIR:-/usr}}/config/config.mk\"\n[ -f \"$config\" ] || "
+                  "config=\"${{MFEM_DIR:-/usr}}/share/mfem/config.mk\"\n"
+                  "if [ ! -f \"$config\" ]; then\n  echo \"MFEM is not found: set MFEM_DIR to the folder where it was built or "
+                  "installed\" >&2\n  exit 1\nfi\n"
+                  "printf 'include %s\\nall:\\n\\t$(MFEM_CXX) $(MFEM_FLAGS) %s -o %s $(MFEM_LIBS)\\n' \"$config\" {0} {1} | "
+                  "make -s -f - "
+                  "all\n{1} {2} \"${{ORDER:-1}}\"\n{3}",
+                  source, program, deck::shell_word(stem + ".problem.txt"), results.after),
       deck);
   deck.result = results.final;
   deck.calls_pcbmesh = options.problem == Problem::driven;

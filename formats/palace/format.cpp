@@ -20,8 +20,8 @@ using mesh::BoundaryCondition;
 constexpr double hz_per_ghz = 1e9;
 constexpr int element_order = 2;
 
-constexpr deck::Limits limits{.solver = "Palace", .solid_copper = false, .wave_ports = true, .lossy_resonances = true,
-                              .floating_skins = true};
+constexpr deck::Limits limits{
+    .solver = "Palace", .solid_copper = false, .wave_ports = true, .lossy_resonances = true, .floating_skins = true};
 
 deck::FieldProblem state(const mesh::PrismMesh& mesh, const DeckOptions& options, Diagnostics& diagnostics) {
   deck::FieldProblem problem = deck::state_within(limits, mesh, options, 0, diagnostics);

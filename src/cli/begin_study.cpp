@@ -30,8 +30,7 @@ void take_first_answers(const StudyOptions& options, study::Study& study) {
 pipeline::StartedStudy settle_study(const board::Board& board, const StudyOptions& options, BegunStudy begun) {
   pipeline::StartedStudy started = pipeline::start_study(board, std::move(begun.study));
   started.study.solver = begun.solver;
-  if (options.split.empty() && study::needs_tetrahedra(started.study))
-    started.study.split = study::ElementSplit::tetrahedra;
+  if (options.split.empty() && study::needs_tetrahedra(started.study)) started.study.split = study::ElementSplit::tetrahedra;
   study::check(started.study);
   return started;
 }

@@ -101,7 +101,10 @@ std::shared_ptr<StudyOptions> add_study_options(CLI::App& command) {
   command.add_option("--tolerance", o->tolerance, "Snapping tolerance: auto or a length (default auto)")->group(sizes);
   command.add_option("--arc-sagitta", o->arc_sagitta, "Largest distance of chord and arc (default 5um)")->group(sizes);
   command.add_option("--unit", o->unit, "Unit written to the mesh: m (default), mm, um")->group(sizes);
-  command.add_option("--split", o->split, "Write tets: three tetrahedra per prism, same nodes and tags (default: none; tets for full wave in dolfinx)")->group(sizes);
+  command
+      .add_option("--split", o->split,
+                  "Write tets: three tetrahedra per prism, same nodes and tags (default: none; tets for full wave in dolfinx)")
+      ->group(sizes);
   command.add_option("--order", o->order, "Order of the elements, 1 (default) or 2: arcs of the layout become curved")
       ->group(sizes);
   CLI::Option* wedge15 =

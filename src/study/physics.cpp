@@ -104,10 +104,11 @@ void check_solver(const Study& study, FaultList& faults) {
     if (!study.sweep) faults.add("/sweep", "a driven problem needs frequencies; give from, to and points, or a list");
   }
   if (needs_tetrahedra(study) && study.split != ElementSplit::tetrahedra)
-    faults.add("/output/split",
-               fmt::format("{0} has no edge elements on prisms, so a {1} problem can't be posed on them; let prisms be cut into "
-                           "tetrahedra (--split tets), or take palace, getdp, elmer or mfem, or problem electrostatic",
-                           name_of(study.solver), name_of(study.problem)));
+    faults.add(
+        "/output/split",
+        fmt::format("{0} has no edge elements on prisms, so a {1} problem can't be posed on them; let prisms be cut into "
+                    "tetrahedra (--split tets), or take palace, getdp, elmer or mfem, or problem electrostatic",
+                    name_of(study.solver), name_of(study.problem)));
   if (study.order == 2 && (study.solver == Solver::getdp || study.solver == Solver::elmer || study.solver == Solver::dolfinx))
     faults.add("/output/order", fmt::format("the deck of {} reads elements of first order; take order 1, or palace or mfem",
                                             name_of(study.solver)));
