@@ -33,7 +33,7 @@ Deck write(const mesh::PrismMesh& mesh, const DeckOptions& options, const std::f
     deck.result = stem + ".port1.dat";
   } else {
     add(stem + ".sif", 0);
-    deck.result = options.problem == Problem::electrostatic ? stem + ".capacitance.dat" : stem;
+    deck.result = options.problem == Problem::electrostatic ? stem + ".capacitance.dat" : stem + ".modes.dat";
   }
   deck::put_run_script(folder / (stem + ".run.sh"),
                        "Makes Elmer's mesh folder (-autoclean would renumber boundaries) and solves.", run, deck);

@@ -125,7 +125,7 @@ class Solvers(unittest.TestCase):
         named = set(sum(([*b["Attributes"]] for key, group in boundaries.items() for b in (group if isinstance(group, list) else [group])), []))
         self.assertEqual(named, set(tags.values()), "every face group has a condition")
         sif = (self.out / "elmer/b.port1.sif").read_text()
-        for word in ("Good Conductor BC", "Absorbing BC", "Electric Robin Coefficient im", "Magnetic Boundary Load 3 im", "E re {e}"):
+        for word in ("Good Conductor BC", "Absorbing BC", "Electric Robin Coefficient im", "Magnetic Boundary Load im 3", "E re {e}"):
             self.assertIn(word, sif)
         self.assertAlmostEqual(float(re.search(r"Relative Permittivity im = Real (\S+)", sif).group(1)), 4.1 * 0.013, places=12, msg="loss is positive here")
         self.assertEqual(sif.count("Boundary Condition "), len(tags))
