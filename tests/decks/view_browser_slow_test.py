@@ -77,7 +77,7 @@ class Pages(unittest.TestCase):
         return self.browser.picture(selector="#canvas")
 
     def page(self, expression):
-        return self.browser.run(f"(() => {{ const page = window.pcbmesh.page, stage = page.stage, prisms = page.prisms; return {expression}; }})()")
+        return self.browser.run(f"(() => {{ const page = window.pcbmesh.page, stage = page.stage, prisms = page.model; return {expression}; }})()")
 
     def check_whole(self):
         """What every page must do."""
@@ -156,7 +156,7 @@ class Pages(unittest.TestCase):
         self.assertTrue(self.page("stage.plane.keep_above"), "the plane cuts away what stands before it")
         hit = self.page("(() => { const p = stage.project([(prisms.box.min_x + prisms.box.max_x) / 2, (prisms.box.min_y + prisms.box.max_y) / 2, (prisms.slab_z[0] + prisms.slab_z.at(-1)) / 2], 5); return stage.pick(p[0], p[1]); })()")
         self.assertEqual(hit["kind"], "section")
-        self.assertEqual(self.page(f"page.describe({{slab: {hit['slab']}, t: {hit['t']}, kind: 'section', at: [0, 0, 0]}}).net"), "SIG")
+        self.assertEqual(self.page(f"prisms.describe({{slab: {hit['slab']}, t: {hit['t']}, kind: 'section', at: [0, 0, 0]}}).net"), "SIG")
         b.set_value("#section_axis", "none")
 
         # Walls have their tags too.
@@ -177,7 +177,7 @@ class Pages(unittest.TestCase):
         signal = next(n for n in nets if n not in ("GND", "no net"))
         b.run(f"[...document.querySelectorAll('#nets button.only')][{nets.index(signal)}].click()")
         self.browser.settle()
-        self.assertEqual(set(self.page("page.prisms.tables.groups.filter((g, i) => !page.hidden[i]).map((g) => page.prisms.tables.nets[g.net].name)")), {signal})
+        self.assertEqual(set(self.page("page.model.tables.groups.filter((g, i) => !page.hidden[i]).map((g) => page.model.tables.nets[g.net].name)")), {signal})
         b.click_on("#view_fit")
         self.assertGreater(share_of(self.canvas(), COPPER), 0.01)
 
