@@ -200,6 +200,9 @@ void CellMesh::find_bands() {
 
 void CellMesh::name_groups(const validation::Expectation* tags) {
   std::vector<std::string> material_names;
+  // Nets have their colours by their place, which tags.json keeps.
+  if (tags != nullptr)
+    for (const auto& net : tags->nets) index_of(nets_, net.name);
   for (CellGroup* g : groups_from_below()) {
     const validation::Expectation::Volume* told = nullptr;
     if (tags != nullptr)

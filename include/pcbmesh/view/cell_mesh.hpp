@@ -150,6 +150,7 @@ using CellSkinVisitor = std::function<void(const CellSkinFace&)>;
 void visit_cell_skin(const CellMesh& mesh, const Visibility& visibility, const CellSkinVisitor& visit);
 /// Calls `visit` with the faces of sheets and ports between two cells of which one is shown.
 void visit_inner_cell_faces(const CellMesh& mesh, const Visibility& visibility, const CellSkinVisitor& visit);
+/// Before anything is cut: the section plane is not looked at.
 [[nodiscard]] SkinCount count_cell_skin(const CellMesh& mesh, const Visibility& visibility);
 
 }  // namespace pcbmesh::view
