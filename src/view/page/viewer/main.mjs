@@ -142,7 +142,7 @@ class Page {
       list.append(element("li", {},
         element("label", {}, port.box, swatch, element("strong", {}, port.name)),
         element("p", {}, facts.join(", ")), nets.length > 0 ? element("p", {}, nets.join("; ")) : "",
-        element("div", { class: "fly" }, element("button", { type: "button", "aria-label": `Show port ${port.name}`, onclick: () => this.fly_to({ code: `port ${port.name}` }, port.at_m) },
+        element("div", { class: "fly" }, element("button", { type: "button", "aria-label": `Show port ${port.name}`, onclick: () => this.fly_to({ code: `port ${port.name}`, span: port.length_m && 12e3 * Math.max(port.length_m, port.width_m) }, port.at_m) },
           `at ${short(port.at_m[0] * 1e3)}, ${short(port.at_m[1] * 1e3)} mm`))));
     }
     $("ports").append(list);
@@ -361,12 +361,13 @@ class Page {
     }
     host.append(list);
   }
+  /// place.span: how many mm should fill the view; else what suits the cells there.
   fly_to(place, at_m) {
     const at = at_m.map((v) => v * 1e3);
     const storey = this.model.storey_at(at[2]), { size, hit } = this.model.look_up(at);
     this.pin = { at, slab: storey, text: place.code };
     const { side } = this.stage;
-    this.stage.fly_to(at, storey, size === null ? side / 10 : Math.min(side, Math.max(size * 40, side / 200)));
+    this.stage.fly_to(at, storey, place.span ? place.span : size === null ? side / 10 : Math.min(side, Math.max(size * 40, side / 200)));
     if (hit) this.show_pick(hit);
     say(`${place.code} at ${short(at[0])}, ${short(at[1])} mm`);
   }
