@@ -288,7 +288,7 @@ std::string pareto_front_svg(const FrontPlot& front) {
                                  : fmt::format("{:g}", at));
       last = x;
     }
-  plot.x_label("prisms; line = predicted, dots = made, large dot = taken, diamond = knee");
+  plot.x_label("prisms; line predicted, dots made, large one taken, \u25c7 knee");
   return plot.finish();
 }
 

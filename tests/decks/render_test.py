@@ -116,6 +116,25 @@ class Pictures(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("DecompressionStream", (self.out / "x.html").read_text())
 
+    def test_a_report_holds_every_plot(self):
+        done = run("view", *VIA[:3], "--policy", "matched", "--target-quality", "0.9", "-o", self.out / "m.html", "--no-check", "--quiet")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        plots = {xml.fromstring(svg).get("aria-label"): svg for svg in re.findall(r"<figure>(<svg.*?</svg>)", (self.out / "m.html").read_text(), re.S)}
+        for title in ("Prism quality q_p", "Layers: height and cuts", "Mean prism quality over one common height", "Optimal prism height of every triangle",
+                      "Pareto front: quality over prisms"):
+            self.assertIn(title, plots)
+        front = plots["Pareto front: quality over prisms"]
+        done = run("mesh", *VIA[:3], "--policy", "matched", "--target-quality", "0.9", "-o", self.out / "m.msh", "--quiet")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        match = json.loads((self.out / "m.report.json").read_text())["match"]
+        taken = match["meshes"][match["chosen"]]
+        self.assertIn(f"taken: {taken['prisms']} prisms, quality {min(taken['mean_prism'], taken['volume_weighted_prism']):.4f}", front)
+        self.assertEqual(len(re.findall(r"<circle", front)), len(match["meshes"]))
+        self.assertIn("goal 0.9", front)
+        # Another policy weighs nothing up.
+        self.assertEqual(run("view", *VIA, "-o", self.out / "a.html", "--no-check", "--quiet").returncode, 0)
+        self.assertNotIn("Pareto front", (self.out / "a.html").read_text().split("<script", 1)[0])
+
     def test_every_format_that_is_read_gives_the_picture_of_the_prism_mesh(self):
         files = [self.out / f"x{ending}" for ending in (".pcbmesh", ".msh", ".vtu", ".vtkhdf", ".xdmf", ".mesh", ".inp")]
         done = run("mesh", *VIA, "--quiet", *(part for file in files for part in ("-o", file)))
