@@ -101,6 +101,7 @@ std::string report_html(const CellMesh& mesh, const PageContents& contents) {
   tables["origin_m"] = packed.origin_m;
   tables["step_m"] = packed.step_m;
   tables["quality_step"] = packed.quality_step;
+  tables["heights_m"] = packed.heights_m;
   return fill_page(tables, packed, shared_plots(contents), contents);
 }
 

@@ -44,7 +44,11 @@ struct PackedCells : PackedArrays {
   /// Distinct kinds of faces: group, group on the other side or -1, face tag or -1, and for either side the conductor that
   /// shines through, or -1.
   std::vector<std::array<std::int32_t, 5>> sides;
-  double quality_step = 1;  ///< quality = (n - 1) * step; n = 0: no measure
+  /// Quality of a cell at a face: n = 0 no measure; n < 65536: (n - 1) * step; else that of the prism of height
+  /// heights_m[n - 65536] over the face.
+  double quality_step = 1;
+  double height_step_m = 1e-13;  ///< heights closer than that are one
+  std::vector<double> heights_m;
 };
 /// Face numbers, cells and node numbers below 2^31: what a page can hold is far less. @throws Error usage (101) beyond.
 [[nodiscard]] PackedCells pack(const CellMesh& mesh);

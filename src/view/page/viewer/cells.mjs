@@ -4,6 +4,12 @@
 import { unzigzag } from "./decode.mjs";
 import { blend, colour_at, light_on, no_value, rgb } from "./paint.mjs";
 import { length_text, grouped, short } from "./panel.mjs";
+import { prism_quality } from "./prisms.mjs";
+
+// Vertices of a face as [corner, distances from the sides]. The diagonal of a quadrilateral is no edge: the corner opposite to it
+// counts as far away.
+const triangle_pattern = [[0, 255, 0, 0], [1, 0, 255, 0], [2, 0, 0, 255]];
+const quad_pattern = [[0, 255, 255, 0], [1, 0, 255, 0], [2, 0, 255, 255], [0, 255, 255, 0], [2, 0, 255, 255], [3, 0, 255, 0]];
 
 export class Cells {
   constructor(tables, arrays) {
@@ -13,8 +19,9 @@ export class Cells {
     const n = (this.num_faces = arrays.corner0.length);
     const [step, step_z] = tables.step_m;
     const axis = (values, k, by) => Float64Array.from(values, (v) => 1e3 * (tables.origin_m[k] + by * v));
-    this.x = axis(arrays.x, 0, step);
-    this.y = axis(arrays.y, 1, step);
+    const at_place = (values) => Float64Array.from(arrays.place, (p) => values[p]);
+    this.x = at_place(axis(arrays.x, 0, step));
+    this.y = at_place(axis(arrays.y, 1, step));
     this.z = axis(arrays.z, 2, step_z);
     this.corners = new Int32Array(4 * n);
     for (let f = 0; f < n; ++f) {
@@ -68,12 +75,19 @@ export class Cells {
   /// Quality of the cell before (0) or behind (1) a face; undefined: no measure.
   quality_of(f, which) {
     const n = which === 0 ? this.quality[f] : this.other_quality[f];
-    return n === 0 ? undefined : (n - 1) * this.tables.quality_step;
+    if (n < 65536) return n === 0 ? undefined : (n - 1) * this.tables.quality_step;
+    // A right prism over this triangle.
+    const [a, b, c] = this.corners_of(f), side = (p, q) => Math.hypot(this.x[p] - this.x[q], this.y[p] - this.y[q], this.z[p] - this.z[q]);
+    return prism_quality(Math.hypot(...this.cross(f)) / 2, side(a, b) ** 2 + side(b, c) ** 2 + side(c, a) ** 2, 1e3 * this.tables.heights_m[n - 65536]);
   }
-  normal(f) {
+  /// Twice the area of a face's first triangle, along its normal.
+  cross(f) {
     const { x, y, z } = this, [a, b, c] = this.corners_of(f);
     const u = [x[b] - x[a], y[b] - y[a], z[b] - z[a]], v = [x[c] - x[a], y[c] - y[a], z[c] - z[a]];
-    const n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]], length = Math.hypot(...n) || 1;
+    return [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+  }
+  normal(f) {
+    const n = this.cross(f), length = Math.hypot(...n) || 1;
     return n.map((w) => w / length);
   }
 
@@ -132,37 +146,37 @@ export class Cells {
     for (let f = 0; f < num_faces; ++f) {
       if (surfaces[f] === 0) continue;
       const tile = tile_of(f), [group, other] = tables.sides[this.side[f]], normal = this.normal(f);
-      const quad = this.corners[4 * f + 3] >= 0, c = this.corners_of(f);
-      for (const which of [0, 1, 2]) {
+      const quad = this.corners[4 * f + 3] >= 0, size = quad ? 4 : 3;
+      for (let which = 0; which < 3; ++which) {
         if (!(surfaces[f] & (1 << which))) continue;
         // Front: what is seen from the side the corners run counter-clockwise on.
         const turned = which === 1, own = turned ? other : group;
-        const light = turned ? light_on(-normal[0], -normal[1], -normal[2]) : light_on(...normal);
-        const front = which === 2 ? paint.cut(other) : paint.face(f, which).map((v) => v * light), inside = paint.cut(own);
-        const rank = Math.min(255, visibility.rank[tables.groups[own].band]);
-        const order = turned ? [...c].reverse() : c;
-        const put = (v, e0, e1, e2) => {
-          const n = next[tile]++;
+        const light = which === 2 ? 1 : turned ? light_on(-normal[0], -normal[1], -normal[2]) : light_on(normal[0], normal[1], normal[2]);
+        const front = which === 2 ? paint.cut(other) : paint.face(f, which), inside = paint.cut(own);
+        const lit = which === 2 ? 0 : 255, rank = Math.min(255, visibility.rank[tables.groups[own].band]);
+        let n = next[tile];
+        const pattern = quad ? quad_pattern : triangle_pattern;
+        for (const [k, e0, e1, e2] of pattern) {
+          const v = this.corners[4 * f + (turned ? size - 1 - k : k)];
           position[3 * n] = x[v] - centre[0];
           position[3 * n + 1] = y[v] - centre[1];
           position[3 * n + 2] = z[v] - centre[2];
-          colour.set([...front, which === 2 ? 0 : 255], 4 * n);
-          back.set([...inside, 255], 4 * n);
-          corner.set([e0, e1, e2, rank], 4 * n);
-        };
-        if (quad) {
-          // The diagonal is no edge: the corner opposite to it counts as far away.
-          put(order[0], 255, 255, 0);
-          put(order[1], 0, 255, 0);
-          put(order[2], 0, 255, 255);
-          put(order[0], 255, 255, 0);
-          put(order[2], 0, 255, 255);
-          put(order[3], 0, 255, 0);
-        } else {
-          put(order[0], 255, 0, 0);
-          put(order[1], 0, 255, 0);
-          put(order[2], 0, 0, 255);
+          const i = 4 * n;
+          colour[i] = front[0] * light;
+          colour[i + 1] = front[1] * light;
+          colour[i + 2] = front[2] * light;
+          colour[i + 3] = lit;
+          back[i] = inside[0];
+          back[i + 1] = inside[1];
+          back[i + 2] = inside[2];
+          back[i + 3] = 255;
+          corner[i] = e0;
+          corner[i + 1] = e1;
+          corner[i + 2] = e2;
+          corner[i + 3] = rank;
+          ++n;
         }
+        next[tile] = n;
       }
     }
     return { position, colour, corner, back, ranges, num_faces: num_surfaces, num_vertices, per_side };
@@ -176,19 +190,11 @@ export class Cells {
       if (tag < 0 || !wanted[tag] || (has_plane && other >= 0 && visibility.shown[group] && visibility.shown[other])) continue;
       const storey = tables.groups[visibility.shown[group] || other < 0 ? group : other].band, rank = Math.min(255, visibility.rank[storey]);
       const c = this.corners_of(f), normal = this.normal(f), light = light_on(normal[0], normal[1], Math.abs(normal[2]));
-      const put = (v, e0, e1, e2) => {
-        position.push(x[v] - centre[0], y[v] - centre[1], z[v] - centre[2]);
+      for (const [k, e0, e1, e2] of c.length === 4 ? quad_pattern : triangle_pattern) {
+        position.push(x[c[k]] - centre[0], y[c[k]] - centre[1], z[c[k]] - centre[2]);
         colour.push(...colours[tag].map((w) => w * light), 255);
         corner.push(e0, e1, e2, rank);
-      };
-      const quad = c.length === 4;
-      put(c[0], 255, quad ? 255 : 0, 0);
-      put(c[1], 0, 255, 0);
-      put(c[2], 0, quad ? 255 : 0, 255);
-      if (!quad) continue;
-      put(c[0], 255, 255, 0);
-      put(c[2], 0, 255, 255);
-      put(c[3], 0, 255, 0);
+      }
     }
     return { position: new Float32Array(position), colour: new Uint8Array(colour), corner: new Uint8Array(corner) };
   }

@@ -6,6 +6,12 @@ import { Paint } from "./paint.mjs";
 import { grouped, length_text, short } from "./panel.mjs";
 import { build, build_rim, build_section, build_tagged, Visibility } from "./skin.mjs";
 
+/// Ye and Daniels, equation 2; beta: sum of the triangle's squared sides.
+export function prism_quality(area, beta, height) {
+  const sum = beta + height * height;
+  return ((32 * Math.sqrt(3)) / 3) * ((area * height) / (sum * Math.sqrt(sum)));
+}
+
 /// What the page asks of a mesh; Cells answers the same. A storey is what the explosion moves as one: here a slab.
 export class Prisms {
   constructor(tables, arrays) {
@@ -269,8 +275,7 @@ export class Prisms {
     return (4 * Math.sqrt(3) * this.area[t]) / this.beta[t];
   }
   prism_quality(slab, t, h = this.height(slab)) {
-    const sum = this.beta[t] + h * h;
-    return ((32 * Math.sqrt(3)) / 3) * ((this.area[t] * h) / (sum * Math.sqrt(sum)));
+    return prism_quality(this.area[t], this.beta[t], h);
   }
 
   /// Number of a prism among the cells of every mesh file of the run, from 0 (mesh::MeshSource, PrismSource): group after group,
