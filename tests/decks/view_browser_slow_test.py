@@ -257,11 +257,36 @@ class Pages(unittest.TestCase):
 
     def test_colours_of_quality_are_those_of_the_cells(self):
         """Graded sub-layers: each wall piece, cap and cut has the colour of the very prism that a click reads."""
-        done = run("view", ROOT / "examples/via.json", "--air", "0", "--policy", "average", "--height-growth", "1.3", "--no-check", "--quiet", "-o", self.out / "graded.html")
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.open("graded")
+        graded = (ROOT / "examples/via.json", "--air", "0", "--policy", "average", "--height-growth", "1.3", "--quiet")
+        for arguments in (("mesh", *graded, "-o", self.out / "g.msh"), ("view", *graded, "--no-check", "-o", self.out / "graded.html"),
+                          ("view", self.out / "g.msh", "--no-check", "--quiet", "-o", self.out / "graded_cells.html")):
+            done = run(*arguments)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        # Cells carry the quality of each, the prism mesh works it out.
+        walls = []
+        for name in ("graded_cells", "graded"):
+            self.open(name)
+            self.browser.set_value("#colour", "q_p")
+            self.browser.run("document.querySelector('#edges').click()")
+            self.browser.click_on("#view_front")
+            walls.append(self.canvas())
+        self.assertLess(difference(*walls), 0.002)
+        # Pieces of walls as they are drawn: as many colours one above the other as there are heights.
+        colours = self.page("""(() => {
+            const { position, colour, ranges } = prisms.build(stage.visibility, prisms.paint("q_p"), stage.centre), above = new Map();
+            for (const r of ranges.filter((r) => r.kind === "wall"))
+                for (let v = r.start; v < r.start + r.count; v += 6) {
+                    const z = (position[3 * v + 2] + position[3 * v + 8]) / 2 + stage.centre[2];
+                    const key = [position[3 * v], position[3 * v + 1], position[3 * v + 3], position[3 * v + 4], prisms.storey_at(z)].join();
+                    if (!above.has(key)) above.set(key, { slab: prisms.storey_at(z), seen: new Set() });
+                    above.get(key).seen.add([...colour.slice(4 * v, 4 * v + 3)].join());
+                }
+            return [...above.values()].map(({ slab, seen }) => [slab, seen.size]);
+        })()""")
         uneven = self.page("Array.from({length: prisms.num_slabs}, (_, s) => s).filter((s) => { const k = prisms.first_sublayer[s], l = prisms.first_sublayer[s + 1] - 1; return Math.abs((prisms.z[k + 1] - prisms.z[k]) / (prisms.z[l + 1] - prisms.z[l]) - 1) > 0.05; })")
         self.assertGreater(len(uneven), 0, "the example is graded unevenly")
+        self.assertEqual({size for slab, size in colours if slab not in uneven}, {1})
+        self.assertGreater(min(size for slab, size in colours if slab in uneven), 1)
         worst = self.page("""Math.max(...%s.flatMap((slab) => Array.from({length: prisms.first_sublayer[slab + 1] - prisms.first_sublayer[slab]}, (_, i) => {
             const k = prisms.first_sublayer[slab] + i, t = 5, at = [0, 0, (prisms.z[k] + prisms.z[k + 1]) / 2], paint = prisms.paint("q_p");
             const exact = prisms.describe({slab, t, kind: "section", at}).q_p, ramp = paint.ramp;
