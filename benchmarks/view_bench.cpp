@@ -106,12 +106,13 @@ int main(int argc, char** argv) {
   for (const char* board : {"serpentine", "via"}) {
     if (argc > 1) break;
     for (const auto policy : {study::HeightPolicy::minimum, study::HeightPolicy::thinnest_layer}) {
-      for (const bool by_floor : {true, false}) {
+      for (const bool by_paper : {true, false}) {
         study::Study study = study::read_study("examples/paper.study.json");
         study.policy = policy;
-        if (!by_floor) study.sublayers = study::Study{}.sublayers;
+        study.paper_compat = by_paper;
+        if (!by_paper) study.sublayers = study::Study{}.sublayers;
         add(fmt::format("{}, case {}, {}", board, policy == study::HeightPolicy::minimum ? 4 : 5,
-                        study::name_of(study.sublayers)),
+                        by_paper ? "as in the paper" : study::name_of(study.sublayers)),
             fmt::format("examples/{}.json", board), study);
       }
     }
