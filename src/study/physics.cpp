@@ -109,9 +109,9 @@ void check_solver(const Study& study, FaultList& faults) {
         fmt::format("{0} has no edge elements on prisms, so a {1} problem can't be posed on them; let prisms be cut into "
                     "tetrahedra (--split tets), or take palace, getdp, elmer or mfem, or problem electrostatic",
                     name_of(study.solver), name_of(study.problem)));
-  if (study.order == 2 && (study.solver == Solver::getdp || study.solver == Solver::elmer || study.solver == Solver::dolfinx))
-    faults.add("/output/order", fmt::format("the deck of {} reads elements of first order; take order 1, or palace or mfem",
-                                            name_of(study.solver)));
+  if (study.order == 2 && study.solver != Solver::palace)
+    faults.add("/output/order",
+               fmt::format("the deck of {} reads elements of first order; take order 1, or palace", name_of(study.solver)));
   if (study.solver == Solver::palace) return;
   for (std::size_t i = 0; i < study.ports.size() && study.problem == Problem::driven; ++i)
     if (study.ports[i].kind == PortKind::wave)

@@ -408,7 +408,7 @@ TEST(Study, SplitsWhereTheSolverHasNoEdgeElementsOnPrisms) {
     EXPECT_NE(error.text().find("--split tets"), std::string::npos) << error.text();
   }
   EXPECT_THROW((void)parse(R"("solver": "getdp", "problem": "eigenmode", "output": {"order": 2})"), Error);
-  EXPECT_NO_THROW((void)parse(R"("solver": "mfem", "problem": "eigenmode", "output": {"order": 2})"));
+  EXPECT_NO_THROW((void)parse(R"("solver": "palace", "problem": "eigenmode", "output": {"order": 2})"));
 }
 
 }  // namespace
