@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "src/cli/begin_study.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <utility>
 
+#include "pcbmesh/base/error.hpp"
 #include "pcbmesh/formats/deck.hpp"
 #include "pcbmesh/study/solver_needs.hpp"
 
@@ -31,6 +35,12 @@ pipeline::StartedStudy settle_study(const board::Board& board, const StudyOption
   pipeline::StartedStudy started = pipeline::start_study(board, std::move(begun.study));
   started.study.solver = begun.solver;
   if (options.split.empty() && study::needs_tetrahedra(started.study)) started.study.split = study::ElementSplit::tetrahedra;
+  if (begun.solver != study::Solver::none && started.study.problem == study::Problem::driven && started.study.ports.empty())
+    throw Error(ErrorCode::study_invalid,
+                fmt::format("no port could be placed for {}: {}; name some (--port, or ports in a study)",
+                            fmt::join(started.study.nets, ", "),
+                            started.left_out.empty() ? "the nets have neither pins nor cuts"
+                                                     : fmt::format("{}", fmt::join(started.left_out, "; "))));
   study::check(started.study);
   return started;
 }
