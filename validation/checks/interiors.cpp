@@ -120,17 +120,18 @@ bool is_inside_cell(const Context& context, std::int64_t half_face, const Vector
   return true;
 }
 
-/// A point of the face's cell, close behind the middle of the face; nothing if there is none.
-std::optional<Vector3> point_behind(const Context& context, std::int64_t half_face) {
+/// How often space is filled close behind the middle of a face; nothing if it can't be told.
+std::optional<int> winding_behind(const Context& context, const Windings& windings, std::int64_t half_face) {
   std::array<std::int64_t, 4> ids{};
   const auto n = static_cast<std::size_t>(context.corners_of_half_face(half_face, ids));
   const Vector3 middle = centre_of(context, context.corners_of_cell(half_face >> 3));
   const Vector3 face = centre_of(context, std::span(ids).first(n));
-  // A bent face may bulge beyond the first; the last is the middle of the cell.
-  for (const double depth : {0.05, 0.3, 1.0}) {
+  // A bent face may bulge beyond the first, and either may lie on a face of another cell; the last is the middle of the cell.
+  for (const double depth : {0.05, 0.31, 1.0}) {
     Vector3 at = face;
     for (std::size_t axis = 0; axis < 3; ++axis) at[axis] += depth * (middle[axis] - face[axis]);
-    if (is_inside_cell(context, half_face, at)) return at;
+    if (!is_inside_cell(context, half_face, at)) continue;
+    if (const auto winding = windings.at(at)) return winding;
   }
   return std::nullopt;
 }
@@ -176,8 +177,7 @@ void check_interiors(const Context& context, const FaceMatch& match, const Volum
                   const std::int64_t end = std::min(num_samples, (task + 1) * samples_per_task);
                   for (std::int64_t i = task * samples_per_task; i < end; ++i) {
                     const std::int64_t half_face = match.boundary[static_cast<std::size_t>(i * stride)];
-                    const auto point = point_behind(context, half_face);
-                    const auto winding = point ? windings.at(*point) : std::nullopt;
+                    const auto winding = winding_behind(context, windings, half_face);
                     Tallies& mine = tallies[static_cast<std::size_t>(worker)];
                     if (!winding) mine.unknown.add(half_face >> 3);
                     if (winding.value_or(1) > 1) mine.covered.add(half_face >> 3);
