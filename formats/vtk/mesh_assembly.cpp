@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "pcbmesh/base/error.hpp"
@@ -97,6 +98,37 @@ void MeshAssembly::add_element(ElementKind kind, std::span<const std::int64_t> n
   }
   (is_cell ? cells_[index].tags : faces_[index].tags).push_back(tag);
   ++num_elements_;
+}
+
+void MeshAssembly::set_tag_of_cell(ElementKind kind, std::span<const std::int64_t> nodes, std::int32_t tag,
+                                   std::int64_t first_node) {
+  using Key = std::array<std::int64_t, 8>;
+  const auto key_of = [](std::span<const std::int64_t> corners, std::int64_t first) {
+    Key key;
+    key.fill(-1);
+    for (std::size_t i = 0; i < std::min(corners.size(), key.size()); ++i) key[i] = corners[i] + first;
+    std::sort(key.begin(), key.end());
+    return key;
+  };
+  const int place = place_of(kind);
+  std::int64_t num_cells = 0;
+  for (const mesh::CellBlock& block : cells_) num_cells += block.size();
+  if (num_cells != num_cells_known_) {
+    cell_of_corners_.clear();
+    for (const mesh::CellBlock& block : cells_) {
+      const auto n = static_cast<std::size_t>(mesh::corners_of(block.kind));
+      for (std::size_t i = 0; i < block.tags.size(); ++i)
+        cell_of_corners_.emplace(key_of(std::span(block.corners).subspan(i * n, n), 0), i);
+    }
+    num_cells_known_ = num_cells;
+  }
+  const auto found = place < 0 ? cell_of_corners_.end() : cell_of_corners_.find(key_of(nodes, first_node));
+  if (found == cell_of_corners_.end())
+    throw Error(ErrorCode::file_syntax,
+                fmt::format("a grid of tags gives {} to a cell that is not in the mesh, with node {}", tag,
+                            nodes.empty() ? -1 : nodes.front()),
+                {.file = file_.string()});
+  cells_[static_cast<std::size_t>(place)].tags[found->second] = tag;
 }
 
 void MeshAssembly::turn_wedges_if_inside_out() {

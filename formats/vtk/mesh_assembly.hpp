@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,6 +27,8 @@ class MeshAssembly {
   /// @throws Error file_syntax (202) for numbers without a node and for kinds that are not read.
   void add_element(mesh::ElementKind kind, std::span<const std::int64_t> nodes, std::span<const std::uint8_t> order,
                    std::int32_t tag, std::int64_t first_node = 0);
+  /// Gives the cell of these corners, added before, its tag. @throws Error file_syntax (202) if there is no such cell.
+  void set_tag_of_cell(mesh::ElementKind kind, std::span<const std::int64_t> nodes, std::int32_t tag, std::int64_t first_node);
   void add_point_or_line(bool is_line) { ++mesh_.num_other_elements[is_line ? 1 : 0]; }
   void add_name(int dimension, std::int32_t tag, std::string name) { mesh_.names.push_back({dimension, tag, std::move(name)}); }
   /// Turns all wedges round if most of them are inside out: VTK changed its mind about their corners, and files do not say.
@@ -38,6 +41,8 @@ class MeshAssembly {
   std::array<mesh::CellBlock, 4> cells_;  ///< by CellKind
   std::array<mesh::FaceBlock, 2> faces_;  ///< by FaceKind
   std::int64_t num_elements_ = 0;
+  std::map<std::array<std::int64_t, 8>, std::size_t> cell_of_corners_;  ///< index in its block; made on first use
+  std::int64_t num_cells_known_ = 0;                                    ///< in cell_of_corners_
 };
 
 }  // namespace pcbmesh::formats::vtk
