@@ -3,12 +3,14 @@
 """Meshes that other programs made, good ones and ones that other programs broke: pcbmesh check judges them, alone and by profile."""
 import json
 import pathlib
+import re
+import shlex
 import sys
 import tempfile
 import unittest
 import xml.etree.ElementTree
 
-from program import SKIPPED, run
+from program import ROOT, SKIPPED, run
 
 try:
     import gmsh
@@ -109,6 +111,33 @@ class ForeignMeshes(unittest.TestCase):
             self.assertEqual((done.returncode, errors(done)), (1, [code]))
             failed = [case.get("name") for case in xml.etree.ElementTree.parse(report).getroot().iter("testcase") if case.find("failure") is not None]
             self.assertEqual(failed, [code])
+
+    def test_the_very_commands_of_the_readme(self):
+        """The block under "In CI", run as it stands, on a mesh of Gmsh and on one of our own."""
+        block = re.search(r"## In CI\n```sh\n(.*?)```", (ROOT / "README.md").read_text(), re.S)[1]
+        commands = [shlex.split(line) for line in block.splitlines() if line.startswith("pcbmesh ")]
+        self.assertEqual(commands[0], "pcbmesh check mesh.msh --profile palace --junit report.xml".split())
+        self.assertEqual(len(commands), 3)
+        gmsh_box(self.out / "mesh.msh", 2.2, True)
+        (self.out / "limits.json").write_text('{"schema_version": 1, "min_face_angle_deg": 5}')
+        made = run("mesh", ROOT / "examples/microstrip.json", "-o", self.out / "usb.msh", "--quiet")
+        self.assertEqual(made.returncode, 0, made.stderr)
+        # Gmsh turns some tagged faces inwards: a warning, on which the second command fails as it says.
+        for command, code in zip(commands, (0, 1, 0)):
+            done = run(*command[1:], cwd=self.out)
+            self.assertEqual(done.returncode, code, (command, done.stdout, done.stderr))
+            if code:
+                self.assertIn("face.tagged_inward", done.stdout)
+        self.assertLessEqual({"report.xml", "report.sarif", "report.html", "bad.vtu"}, {file.name for file in self.out.iterdir()})
+        # The gate closes: a cell of the foreign mesh turned inside out fails the same command, and the report says where.
+        lines = (self.out / "mesh.msh").read_text().splitlines()
+        first = next(i for i, line in enumerate(lines) if line.split()[1:3] == ["6", "2"])
+        words = lines[first].split()
+        lines[first] = " ".join(words[:5] + words[-3:] + words[-6:-3])
+        (self.out / "mesh.msh").write_text("\n".join(lines) + "\n")
+        self.assertEqual(run(*commands[0][1:], cwd=self.out).returncode, 1)
+        failed = [case.get("name") for case in xml.etree.ElementTree.parse(self.out / "report.xml").getroot().iter("testcase") if case.find("failure") is not None]
+        self.assertIn("cell.inverted", failed)
 
     def test_each_profile_on_prisms_and_tetrahedra_of_gmsh(self):
         prisms = gmsh_box(self.out / "prisms.msh", 2.2, True)

@@ -68,11 +68,9 @@ class Windings {
   [[nodiscard]] std::optional<int> along_ray(const Vector3& point, const double (&slope)[2]) const {
     const double rise = 1.01 * (context_.high[2] - point[2]) + context_.tolerance;
     const Vector3 to{point[0] + slope[0] * rise, point[1] + slope[1] * rise, point[2] + rise};
-    Box box{point, point};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      box.low[axis] = std::min(box.low[axis], to[axis]);
-      box.high[axis] = std::max(box.high[axis], to[axis]);
-    }
+    Box box;
+    box.add(point);
+    box.add(to);
     int winding = 0;
     bool clear = true;
     std::array<Triangle, 2> triangles;
@@ -139,14 +137,8 @@ std::optional<int> winding_behind(const Context& context, const Windings& windin
 Box box_of(const Context& context, std::int64_t half_face) {
   std::array<std::int64_t, 4> ids{};
   const auto n = static_cast<std::size_t>(context.corners_of_half_face(half_face, ids));
-  Box box{context.mesh.nodes[static_cast<std::size_t>(ids[0])], context.mesh.nodes[static_cast<std::size_t>(ids[0])]};
-  for (std::size_t i = 1; i < n; ++i) {
-    const Vector3& at = context.mesh.nodes[static_cast<std::size_t>(ids[i])];
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      box.low[axis] = std::min(box.low[axis], at[axis] - context.tolerance);
-      box.high[axis] = std::max(box.high[axis], at[axis] + context.tolerance);
-    }
-  }
+  Box box;
+  for (std::size_t i = 0; i < n; ++i) box.add(context.mesh.nodes[static_cast<std::size_t>(ids[i])], context.tolerance);
   return box;
 }
 

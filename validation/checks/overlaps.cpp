@@ -166,7 +166,9 @@ struct OverlapTallies {
 };
 
 bool contains(const Box& box, const Vector3& at) {
-  return box.meets({at, at});
+  Box point;
+  point.add(at);
+  return box.meets(point);
 }
 
 /// The boxes are wider than the faces by the tolerance.
@@ -205,13 +207,8 @@ bool lies_on_bounding_box(const Context& context, const Patch& patch) {
 }
 
 Box box_around(const Patch& patch, double margin) {
-  Box box{patch.at[0], patch.at[0]};
-  for (std::size_t i = 0; i < patch.n; ++i) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      box.low[axis] = std::min(box.low[axis], patch.at[i][axis] - margin);
-      box.high[axis] = std::max(box.high[axis], patch.at[i][axis] + margin);
-    }
-  }
+  Box box;
+  for (std::size_t i = 0; i < patch.n; ++i) box.add(patch.at[i], margin);
   return box;
 }
 
