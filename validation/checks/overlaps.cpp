@@ -166,9 +166,10 @@ struct OverlapTallies {
 };
 
 bool contains(const Box& box, const Vector3& at) {
-  Box point;
-  point.add(at);
-  return box.meets(point);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (at[axis] < double{box.low[axis]} || at[axis] > double{box.high[axis]}) return false;
+  }
+  return true;
 }
 
 /// The boxes are wider than the faces by the tolerance.
