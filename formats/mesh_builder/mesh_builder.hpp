@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "formats/mesh_builder/element_blocks.hpp"
 #include "formats/syntax/byte_source.hpp"
 #include "pcbmesh/mesh/mesh_data.hpp"
 #include "pcbmesh/mesh/mesh_source.hpp"
@@ -70,7 +71,7 @@ class MeshBuilder {
   [[nodiscard]] bool has_nodes() const { return has_nodes_; }
 
   /// Makes room for elements of one kind.
-  void reserve(mesh::ElementKind kind, std::int64_t count);
+  void reserve(mesh::ElementKind kind, std::int64_t count) { blocks_.reserve(kind, count); }
   /// @param nodes  node numbers of the file, in Gmsh order, as many as the kind has. Faces without a tag are dropped.
   /// @return whether it is in the mesh.
   /// @throws Error file_syntax (202): a node that does not exist, a negative tag.
@@ -82,12 +83,12 @@ class MeshBuilder {
   }
   [[nodiscard]] const NodeNumbers& numbers() const { return numbers_; }
   /// Faces of one kind in the mesh so far.
-  [[nodiscard]] std::int64_t num_faces(mesh::ElementKind kind) const { return faces_[static_cast<std::size_t>(kind)].size(); }
+  [[nodiscard]] std::int64_t num_faces(mesh::ElementKind kind) const { return blocks_.faces(kind).size(); }
   /// Corners of `count` of them, as indices of nodes.
   [[nodiscard]] std::span<const std::int64_t> corners_of_faces(mesh::ElementKind kind, std::int64_t first,
                                                                std::int64_t count) const {
     const auto n = static_cast<std::size_t>(mesh::corners_of(kind));
-    return std::span(faces_[static_cast<std::size_t>(kind)].corners)
+    return std::span(blocks_.faces(kind).corners)
         .subspan(static_cast<std::size_t>(first) * n, static_cast<std::size_t>(count) * n);
   }
   void set_periodic(std::vector<mesh::PeriodicLink> links) { mesh_.periodic = std::move(links); }
@@ -96,14 +97,11 @@ class MeshBuilder {
   [[nodiscard]] mesh::MeshData take(std::string source_name);
 
  private:
-  static constexpr std::size_t num_kinds = static_cast<std::size_t>(mesh::ElementKind::wedge18) + 1;
-
   syntax::ByteSource* source_;  ///< not null
   mesh::MeshData mesh_;
   NodeNumbers numbers_;
   IdRuns elements_;
-  std::array<mesh::CellBlock, num_kinds> cells_;  ///< by ElementKind, as faces_
-  std::array<mesh::FaceBlock, num_kinds> faces_;
+  ElementBlocks blocks_;
   bool has_nodes_ = false;
 };
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -9,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "formats/mesh_builder/element_blocks.hpp"
 #include "pcbmesh/mesh/mesh_data.hpp"
 #include "pcbmesh/mesh/mesh_source.hpp"
 
@@ -22,27 +22,30 @@ class MeshAssembly {
   /// Nodes that follow those there are. @param values  three per node.
   void add_nodes(std::span<const double> values);
   [[nodiscard]] std::int64_t num_nodes() const { return static_cast<std::int64_t>(mesh_.nodes.size()); }
-  void reserve(mesh::ElementKind kind, std::int64_t count);
+  void reserve(mesh::ElementKind kind, std::int64_t count) { blocks_.reserve(kind, count); }
   /// @param nodes  node numbers, `first_node` less than they are; in the file's order. @param order  file[i] = ours[order[i]].
-  /// @throws Error file_syntax (202) for numbers without a node and for kinds that are not read.
+  /// @throws Error file_syntax (202) for numbers without a node.
   void add_element(mesh::ElementKind kind, std::span<const std::int64_t> nodes, std::span<const std::uint8_t> order,
                    std::int32_t tag, std::int64_t first_node = 0);
   /// Gives the cell of these corners, added before, its tag. @throws Error file_syntax (202) if there is no such cell.
   void set_tag_of_cell(mesh::ElementKind kind, std::span<const std::int64_t> nodes, std::int32_t tag, std::int64_t first_node);
   void add_point_or_line(bool is_line) { ++mesh_.num_other_elements[is_line ? 1 : 0]; }
   void add_name(int dimension, std::int32_t tag, std::string name) { mesh_.names.push_back({dimension, tag, std::move(name)}); }
-  /// Turns all wedges round if most of them are inside out: VTK changed its mind about their corners, and files do not say.
+  /// Turns all wedges of first order round if most of them are inside out: VTK changed its mind about their corners, and files
+  /// do not say.
   void turn_wedges_if_inside_out();
   [[nodiscard]] mesh::MeshData take();
 
  private:
   std::filesystem::path file_;
   mesh::MeshData mesh_;
-  std::array<mesh::CellBlock, 4> cells_;  ///< by CellKind
-  std::array<mesh::FaceBlock, 2> faces_;  ///< by FaceKind
+  ElementBlocks blocks_;
   std::int64_t num_elements_ = 0;
-  std::map<std::array<std::int64_t, 8>, std::size_t> cell_of_corners_;  ///< index in its block; made on first use
-  std::int64_t num_cells_known_ = 0;                                    ///< in cell_of_corners_
+  struct KnownCells {
+    std::int64_t num_known = 0;
+    std::map<std::array<std::int64_t, 8>, std::size_t> index_of;  ///< by sorted corners
+  };
+  std::map<mesh::ElementKind, KnownCells> cells_by_corners_;  ///< made when tags come in a grid of their own
 };
 
 }  // namespace pcbmesh::formats::vtk

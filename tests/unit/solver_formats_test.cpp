@@ -133,8 +133,9 @@ TEST(RoundTrip, GivesBackEveryNumber) {
   const mesh::PrismMesh mesh = sample();
   for (const MeshFormat* format : mesh_formats()) {
     if (format->read == nullptr || format->write == nullptr || format->scope.readable == 0) continue;
-    // Abaqus has 20 characters a coordinate and faces as sides: below. The VTK and HDF5 family has tests of its own.
-    if (format->name != "msh" && format->name != "mfem") continue;
+    // Abaqus has 20 characters a coordinate and faces as sides: below. The native file computes its cells: native_mesh_test.
+    if (format->name == "abaqus" || format->name == "native") continue;
+    const bool is_msh = format->name == "msh", is_xdmf = format->name == "xdmf", is_hdf5 = is_xdmf || format->name == "vtkhdf";
     for (const int variant : {0, 1, 2, 3, 4}) {
       mesh::PrismSource prisms(mesh);
       extrude::SecondOrderSource second(mesh, {.with_face_nodes = variant != 2});
@@ -148,11 +149,19 @@ TEST(RoundTrip, GivesBackEveryNumber) {
       if (!std::ranges::all_of(source.blocks(), [&](const auto& block) { return holds(format->scope.readable, block.kind); }))
         continue;
       for (const bool binary : {true, false}) {
+        if (!binary && is_hdf5) continue;
         for (const char* version : {"", "2.2"}) {
+          if (*version != '\0' && !is_msh) continue;
           const Folder folder;
           const std::string name = "a" + std::string(format->extensions[0]);
-          write_mesh(source, folder / name, {binary, LengthUnit::metre, version});
-          const mesh::MeshData read = read_mesh(folder / name), expected = mesh::expand(source);
+          try {
+            write_mesh(source, folder / name, {.binary = binary, .unit = LengthUnit::metre, .version = version, .faces = true});
+          } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ErrorCode::format_not_built) << error.what();
+            continue;
+          }
+          // An XDMF file of cells alone is what dolfinx and meshio read; the one for ParaView has the faces too.
+          const mesh::MeshData read = read_mesh(folder / (is_xdmf ? "a_paraview.xdmf" : name)), expected = mesh::expand(source);
           SCOPED_TRACE(std::string(format->name) + " variant " + std::to_string(variant) + " " + version);
           expect_same(read, expected);
         }
@@ -377,10 +386,10 @@ TEST(SolverFormats, CellsWithoutAWordAreRefusedBeforeTheFirstByte) {
 }
 
 TEST(FolderSink, AppearsWholeOrNotAtAll) {
-  constexpr std::array<std::string_view, 2> names{"one", "two"};
+  const auto is_ours = [](std::string_view name) { return name == "one" || name == "two"; };
   const Folder folder;
   const auto write = [&](const std::string& text, bool commits) {
-    FolderSink sink(folder / "a.elmer", names);
+    FolderSink sink(folder / "a.elmer", is_ours);
     create(sink.file("one"), text);
     if (commits) sink.commit();
   };
@@ -401,7 +410,7 @@ TEST(FolderSink, AppearsWholeOrNotAtAll) {
   EXPECT_EQ(contents(folder / "a.elmer" / "one"), "second");
   EXPECT_EQ(folder.num_files(), 1u);
   create(folder / "b.elmer", "a file");
-  EXPECT_EQ(error_of([&] { FolderSink(folder / "b.elmer", names); }).code(), ErrorCode::write_failed);
+  EXPECT_EQ(error_of([&] { FolderSink(folder / "b.elmer", is_ours); }).code(), ErrorCode::write_failed);
 }
 
 /// Elmer's boundary names both parents of an inner face and one of an outer.
