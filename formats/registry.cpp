@@ -202,7 +202,9 @@ void write_mesh(mesh::MeshSource& source, const std::filesystem::path& file, con
 
 mesh::MeshData read_mesh(const std::filesystem::path& file, std::string_view format, const Progress& progress) {
   progress.check();
-  const MeshFormat& chosen = mesh_format_for(file, format, ErrorCode::format_unknown);
+  // Folders of Elmer have names of their own.
+  const bool is_elmer = format.empty() && (file.filename() == "mesh.header" || std::filesystem::exists(file / "mesh.header"));
+  const MeshFormat& chosen = mesh_format_for(file, is_elmer ? elmer::mesh_format.name : format, ErrorCode::format_unknown);
   if (chosen.read == nullptr)
     throw Error(ErrorCode::format_unknown,
                 fmt::format("{} is not read, only written; these are read: {}", chosen.name, names_with(&MeshFormat::read)),

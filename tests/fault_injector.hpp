@@ -145,6 +145,14 @@ class Damage {
     c.mesh.nodes.push_back(place);
     return static_cast<std::int64_t>(c.mesh.nodes.size()) - 1;
   }
+  double six_volumes(const std::array<std::int64_t, 4>& ids) {
+    std::array<std::array<double, 3>, 3> e{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t axis = 0; axis < 3; ++axis) e[i][axis] = at(ids[i + 1])[axis] - at(ids[0])[axis];
+    }
+    return e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) + e[0][1] * (e[1][2] * e[2][0] - e[1][0] * e[2][2]) +
+           e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]);
+  }
   bool has_wedge(const CellAt& cell) { return block_of(cell).kind == mesh::CellKind::wedge; }
 
   struct Cell {
@@ -295,6 +303,28 @@ class Damage {
       }
     }
     c.expectation.periodic = {{"xmin", "xmax", std::nullopt}};
+    link_sides();
+  }
+  /// What a file would say of them: xmax is xmin, moved along x.
+  void link_sides() {
+    mesh::PeriodicLink link{"xmax of xmin", {}, {}, {}, std::array<double, 12>{1, 0, 0, n * 1e-3, 0, 1, 0, 0, 0, 0, 1, 0}};
+    for (int k = 0; k < num_levels; ++k) {
+      for (int y = 0; y <= n; ++y) link.nodes.push_back({node(n, y, k), node(0, y, k)});
+    }
+    for (const auto& block : c.mesh.faces) {
+      const auto size = static_cast<std::ptrdiff_t>(corners_of(block.kind));
+      mesh::FaceBlock high{block.kind, {}, {}}, low = high;
+      for (std::int64_t i = 0; i < block.size(); ++i) {
+        const std::int32_t side = block.tags[static_cast<std::size_t>(i)];
+        if (side != xmin && side != xmax) continue;
+        auto& into = side == xmax ? high : low;
+        into.corners.insert(into.corners.end(), block.corners.begin() + i * size, block.corners.begin() + (i + 1) * size);
+        into.tags.push_back(0);
+      }
+      if (high.size() > 0) link.faces.push_back(high);
+      if (low.size() > 0) link.partner_faces.push_back(low);
+    }
+    c.mesh.periodic = {link};
   }
   double area(const std::vector<std::int64_t>& ids) {
     double sum = 0;
@@ -311,12 +341,24 @@ class Damage {
   }
 };
 
+/// A finding beside the one that must be made, and why such a mesh shows it by the definition of the check.
+struct Consequence {
+  const char* code;
+  bool is_certain;  ///< follows wherever the damage is done, on every kind of cells; else it depends on the place or the kind
+  const char* why;
+};
+inline Consequence always(const char* code, const char* why) {
+  return {code, true, why};
+}
+inline Consequence perhaps(const char* code, const char* why) {
+  return {code, false, why};
+}
+
 /// One kind of damage. `apply` returns the code that must be found, or nothing where this kind of cells can't be damaged so.
 struct Fault {
   const char* name;
   std::function<std::string(Damage&)> apply;
-  /// What else such a mesh rightly shows. Each of them shows up on some mesh: the test looks.
-  std::vector<std::string> consequences;
+  std::vector<Consequence> consequences;
 };
 
 }  // namespace pcbmesh::tests

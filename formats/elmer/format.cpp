@@ -8,6 +8,7 @@
 #include <string>
 
 #include "formats/elements/element_walk.hpp"
+#include "formats/elmer/read_elmer.hpp"
 #include "formats/face_parents/face_parents.hpp"
 #include "formats/sink/folder_sink.hpp"
 
@@ -146,12 +147,13 @@ void write(mesh::MeshSource& source, const std::filesystem::path& file, const Wr
 using enum ElementKind;
 constexpr KindSet kinds =
     kind_set(triangle, quadrangle, tetrahedron, pyramid, wedge, hexahedron, triangle6, quadrangle8, tetrahedron10, wedge15);
+constexpr KindSet readable = kinds | kind_set(quadrangle9, wedge18);
 
 }  // namespace
 
 constinit const MeshFormat mesh_format{
     "elmer",    "Elmer mesh, a folder of mesh.* files",
     extensions, write,
-    nullptr,    {.written = kinds, .readable = 0, .has_tags = true, .has_names = true, .is_folder = true}};
+    read_elmer, {.written = kinds, .readable = readable, .has_tags = true, .has_names = true, .is_folder = true}};
 
 }  // namespace pcbmesh::formats::elmer

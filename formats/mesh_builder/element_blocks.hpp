@@ -22,6 +22,9 @@ class ElementBlocks {
   [[nodiscard]] std::span<std::int64_t> cell_corners(mesh::ElementKind kind) {
     return cells_[static_cast<std::size_t>(kind)].corners;
   }
+  /// All elements of a kind of faces, or of cells. REQUIRES that the kind is one of these.
+  [[nodiscard]] const mesh::FaceBlock& faces(mesh::ElementKind kind) const { return faces_[static_cast<std::size_t>(kind)]; }
+  [[nodiscard]] mesh::CellBlock& cells(mesh::ElementKind kind) { return cells_[static_cast<std::size_t>(kind)]; }
   /// Moves all that is not empty into the mesh.
   void move_to(mesh::MeshData& mesh);
 

@@ -8,7 +8,8 @@
 #include <utility>
 
 namespace pcbmesh::formats {
-MeshBuilder::MeshBuilder(syntax::ByteSource& source) : source_(source) {
+
+MeshBuilder::MeshBuilder(syntax::ByteSource& source) : source_(&source) {
   mesh_.num_other_elements.assign(2, 0);
 }
 
@@ -63,35 +64,36 @@ std::int64_t NodeNumbers::find_sparse(std::int64_t number) const {
 }
 
 void MeshBuilder::add_name(int dimension, std::int32_t tag, std::string name) {
-  if (dimension < 0 || dimension > 3) source_.fail(fmt::format("a physical name has dimension {}", dimension));
+  if (dimension < 0 || dimension > 3) source_->fail(fmt::format("a physical name has dimension {}", dimension));
   mesh_.names.push_back({dimension, tag, std::move(name)});
 }
 
 void MeshBuilder::finish_nodes() {
-  if (has_nodes_) source_.fail("the file has two sections of nodes");
+  if (has_nodes_) source_->fail("the file has two sections of nodes");
   has_nodes_ = true;
-  numbers_.finish(source_);
+  numbers_.finish(*source_);
 }
 
-void MeshBuilder::add_element(mesh::ElementKind kind, std::int64_t number, std::int32_t tag,
+bool MeshBuilder::add_element(mesh::ElementKind kind, std::int64_t number, std::int32_t tag,
                               std::span<const std::int64_t> nodes) {
   elements_.add(number);
   std::array<std::int64_t, 18> indices{};
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     indices[i] = numbers_.find(nodes[i]);
-    if (indices[i] < 0) source_.fail(fmt::format("element {} names node {}, which does not exist", number, nodes[i]));
+    if (indices[i] < 0) source_->fail(fmt::format("element {} names node {}, which does not exist", number, nodes[i]));
   }
-  if (tag < 0) source_.fail(fmt::format("element {} has physical group {}; groups are numbered from 1 here", number, tag));
+  if (tag < 0) source_->fail(fmt::format("element {} has physical group {}; groups are numbered from 1 here", number, tag));
   if (tag == 0 && mesh::dimension_of(kind) == 2) {
     ++mesh_.num_untagged[2];
-    return;
+    return false;
   }
   blocks_.add(kind, tag, std::span(indices).first(nodes.size()));
+  return true;
 }
 
 void MeshBuilder::finish_elements() {
   if (const std::int64_t repeated = elements_.find_repeated(); repeated >= 0)
-    source_.fail(fmt::format("element number {} is given twice", repeated));
+    source_->fail(fmt::format("element number {} is given twice", repeated));
 }
 
 mesh::MeshData MeshBuilder::take(std::string source_name) {

@@ -57,6 +57,8 @@ class NodeNumbers {
 class MeshBuilder {
  public:
   explicit MeshBuilder(syntax::ByteSource& source);
+  /// The mesh goes on in another file, which messages name from now on.
+  void now_reading(syntax::ByteSource& source) { source_ = &source; }
 
   void set_format(std::string version, bool is_binary) { mesh_.format = {"msh", std::move(version), is_binary}; }
   void add_name(int dimension, std::int32_t tag, std::string name);
@@ -71,20 +73,31 @@ class MeshBuilder {
   /// Makes room for elements of one kind.
   void reserve(mesh::ElementKind kind, std::int64_t count) { blocks_.reserve(kind, count); }
   /// @param nodes  node numbers of the file, in Gmsh order, as many as the kind has. Faces without a tag are dropped.
+  /// @return whether it is in the mesh.
   /// @throws Error file_syntax (202): a node that does not exist, a negative tag.
-  void add_element(mesh::ElementKind kind, std::int64_t number, std::int32_t tag, std::span<const std::int64_t> nodes);
+  bool add_element(mesh::ElementKind kind, std::int64_t number, std::int32_t tag, std::span<const std::int64_t> nodes);
   /// Counts a point (0) or line (1), which no mesh here holds.
   void add_other(int dimension, std::int32_t tag) {
     ++mesh_.num_other_elements[static_cast<std::size_t>(dimension)];
     if (tag == 0) ++mesh_.num_untagged[static_cast<std::size_t>(dimension)];
   }
   [[nodiscard]] const NodeNumbers& numbers() const { return numbers_; }
+  /// Faces of one kind in the mesh so far.
+  [[nodiscard]] std::int64_t num_faces(mesh::ElementKind kind) const { return blocks_.faces(kind).size(); }
+  /// Corners of `count` of them, as indices of nodes.
+  [[nodiscard]] std::span<const std::int64_t> corners_of_faces(mesh::ElementKind kind, std::int64_t first,
+                                                               std::int64_t count) const {
+    const auto n = static_cast<std::size_t>(mesh::corners_of(kind));
+    return std::span(blocks_.faces(kind).corners)
+        .subspan(static_cast<std::size_t>(first) * n, static_cast<std::size_t>(count) * n);
+  }
+  void set_periodic(std::vector<mesh::PeriodicLink> links) { mesh_.periodic = std::move(links); }
   void finish_elements();
 
   [[nodiscard]] mesh::MeshData take(std::string source_name);
 
  private:
-  syntax::ByteSource& source_;
+  syntax::ByteSource* source_;  ///< not null
   mesh::MeshData mesh_;
   NodeNumbers numbers_;
   IdRuns elements_;

@@ -85,6 +85,10 @@ class Reader {
   void read_head() {
     const std::string head(source_.line());
     const std::string_view start = "MFEM mesh v";
+    for (const std::string_view kind : {"NURBS", "NC", "INLINE"})
+      if (head.starts_with(fmt::format("MFEM {} mesh", kind)))
+        source_.fail(
+            fmt::format("MFEM meshes of the kind {} are not read, only plain ones; let MFEM save it as a plain mesh", kind));
     if (!head.starts_with(start)) source_.fail("this is no MFEM mesh: it does not start with 'MFEM mesh v1.0'");
     std::string version = head.substr(start.size());
     while (!version.empty() && (version.back() == ' ' || version.back() == '\r')) version.pop_back();

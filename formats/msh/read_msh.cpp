@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "formats/mesh_builder/mesh_builder.hpp"
+#include "formats/msh/periodic.hpp"
 #include "formats/syntax/byte_source.hpp"
 
 namespace pcbmesh::formats::msh {
@@ -78,8 +79,13 @@ class Reader {
   void read_elements_41();
   std::int64_t read_element_block_41(std::int64_t most);
   [[nodiscard]] ElementType type_of(std::int32_t number) const;
-  void add_element(const ElementType& type, std::int64_t number, std::int32_t tag, std::span<const std::int64_t> nodes) {
-    type.kind ? builder_.add_element(*type.kind, number, tag, nodes) : builder_.add_other(type.dimension, tag);
+  void add_element(const ElementType& type, std::int64_t number, std::int32_t tag, std::int32_t entity,
+                   std::span<const std::int64_t> nodes) {
+    if (!type.kind) {
+      builder_.add_other(type.dimension, tag);
+    } else if (const bool is_in = builder_.add_element(*type.kind, number, tag, nodes); type.dimension == 2) {
+      faces_.add(*type.kind, entity, is_in ? builder_.num_faces(*type.kind) - 1 : -1, nodes);
+    }
     tick();
   }
   [[nodiscard]] std::int32_t tag_of_entity(std::int32_t dimension, std::int32_t tag) const;
@@ -97,6 +103,8 @@ class Reader {
   bool is_41_ = false, binary_ = false, has_format_ = false, has_elements_ = false;
   std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> entities_;  ///< (dimension, tag) -> physical tag or 0
   std::vector<std::int64_t> node_tags_;
+  SurfaceFaces faces_;
+  std::vector<SurfaceLink> links_;
   std::int64_t ticks_ = 0;
 };
 
@@ -128,7 +136,10 @@ mesh::MeshData Reader::read(std::string source_name) {
       builder_.finish_elements();
     } else if (name == "$PartitionedEntities") {
       source_.fail("partitioned meshes are not read; write the mesh in one piece");
-    } else {  // $Periodic, $NodeData, ...: nothing that changes the mesh
+    } else if (name == "$Periodic") {
+      if (!is_41_) source_.enter("$Periodic", true);
+      links_ = read_periodic(source_, is_41_ ? numbers_ : Numbers(source_, false), is_41_);
+    } else {  // $NodeData, ...: nothing that changes the mesh
       source_.skip_past("$End" + std::string(name.substr(1)));
       continue;
     }
@@ -138,6 +149,7 @@ mesh::MeshData Reader::read(std::string source_name) {
   if (!builder_.has_nodes() || !has_elements_)
     source_.fail(fmt::format("the file ends without {}", builder_.has_nodes() ? "$Elements" : "$Nodes"),
                  ErrorCode::file_truncated);
+  builder_.set_periodic(resolve(links_, faces_, builder_));
   return builder_.take(std::move(source_name));
 }
 
@@ -285,14 +297,14 @@ void Reader::read_elements_22_text(std::int64_t count) {
     const std::int64_t number = numbers_.size();
     const ElementType type = type_of(numbers_.integer());
     const std::int64_t num_tags = numbers_.count(4, 2, "tags of an element");
-    std::int32_t tag = 0;
+    std::int32_t tag = 0, entity = 0;
     for (std::int64_t j = 0; j < num_tags; ++j) {
       const std::int32_t one = numbers_.integer();
-      if (j == 0) tag = one;
+      if (j < 2) (j == 0 ? tag : entity) = one;
     }
     const auto corners = std::span(nodes).first(static_cast<std::size_t>(type.num_nodes));
     for (std::int64_t& node : corners) node = numbers_.size();
-    add_element(type, number, tag, corners);
+    add_element(type, number, tag, entity, corners);
   }
 }
 
@@ -310,13 +322,13 @@ void Reader::read_elements_22_binary(std::int64_t count) {
     const auto corners = std::span(nodes).first(static_cast<std::size_t>(type.num_nodes));
     for (std::int32_t i = 0; i < block; ++i) {
       const std::int32_t number = numbers_.integer();
-      std::int32_t tag = 0;
+      std::int32_t tag = 0, entity = 0;
       for (std::int32_t j = 0; j < num_tags; ++j) {
         const std::int32_t one = numbers_.integer();
-        if (j == 0) tag = one;
+        if (j < 2) (j == 0 ? tag : entity) = one;
       }
       for (std::int64_t& node : corners) node = numbers_.integer();
-      add_element(type, number, tag, corners);
+      add_element(type, number, tag, entity, corners);
     }
     done += block;
   }
@@ -347,7 +359,7 @@ std::int64_t Reader::read_element_block_41(std::int64_t most) {
   for (std::int64_t i = 0; i < count; ++i) {
     const std::int64_t number = numbers_.size();
     for (std::int64_t& node : corners) node = numbers_.size();
-    add_element(type, number, tag, corners);
+    add_element(type, number, tag, entity, corners);
   }
   return count;
 }

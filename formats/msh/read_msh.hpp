@@ -12,7 +12,8 @@ namespace pcbmesh::formats::msh {
 ///
 /// Corners are indices into `nodes`, whatever numbers the file gives its nodes. An element's tag is its physical group,
 /// in 4.1 the first one of its entity; 0 if it has none. Cells and faces come as one block per kind and order, in file order;
-/// faces without a physical group are left out like points and lines, which are counted.
+/// faces without a physical group are left out like points and lines, which are counted. Links of $Periodic between surfaces
+/// come as MeshData::periodic, their nodes and faces by index.
 /// Shares no code with the writer, so that reading back proves something.
 ///
 /// @throws Error file_unreadable (201); file_syntax (202): not MSH, a version or element kind that is not read, numbers that

@@ -68,8 +68,9 @@ void XMLCALL on_text(void* user, const XML_Char* text, int size) {
     building.open.back().text.append(text, static_cast<std::size_t>(size));
 }
 
-void XMLCALL on_document_type(void* user, const XML_Char*, const XML_Char*, const XML_Char*, int) {
-  static_cast<Building*>(user)->stop("the file has a document type, which mesh files do not need");
+void XMLCALL on_entity(void* user, const XML_Char*, int, const XML_Char*, int, const XML_Char*, const XML_Char*,
+                       const XML_Char*, const XML_Char*) {
+  static_cast<Building*>(user)->stop("the document type of the file declares entities, which mesh files do not need");
 }
 
 }  // namespace
@@ -95,7 +96,7 @@ XmlTree parse_xml(std::string_view bytes, const std::filesystem::path& file, std
   XML_SetUserData(parser.get(), &building);
   XML_SetElementHandler(parser.get(), on_start, on_end);
   XML_SetCharacterDataHandler(parser.get(), on_text);
-  XML_SetStartDoctypeDeclHandler(parser.get(), on_document_type);
+  XML_SetEntityDeclHandler(parser.get(), on_entity);
   for (std::size_t at = 0; at < bytes.size();) {
     const std::string_view part = bytes.substr(at, bytes_at_once);
     at += part.size();

@@ -30,8 +30,8 @@ struct XmlTree {
   std::int64_t stopped_at = -1;
 };
 
-/// Parses XML. From the start of an element named `stop_at` on nothing is read: raw bytes may follow there. Document types
-/// are refused: they could make entities that grow without end.
+/// Parses XML. From the start of an element named `stop_at` on nothing is read: raw bytes may follow there. Entities
+/// are refused, as they could grow without end; a document type without them is passed over.
 /// @throws Error file_syntax (202) with the byte offset, file_truncated (205).
 [[nodiscard]] XmlTree parse_xml(std::string_view bytes, const std::filesystem::path& file, std::string_view stop_at = {});
 

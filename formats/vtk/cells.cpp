@@ -29,6 +29,10 @@ std::uint8_t cell_type(ElementKind kind) {
 }
 
 std::optional<ElementKind> element_kind(int cell_type) {
+  // Cells of any order, as dolfinx writes them; those of first order are the old ones under another number.
+  constexpr ElementKind of_any_order[] = {ElementKind::triangle,   ElementKind::quadrangle, ElementKind::tetrahedron,
+                                          ElementKind::hexahedron, ElementKind::wedge,      ElementKind::pyramid};
+  if (cell_type >= 69 && cell_type <= 74) return of_any_order[cell_type - 69];
   const auto found = std::ranges::find(types, cell_type, [](std::uint8_t type) { return int{type}; });
   if (found == types.end()) return std::nullopt;
   return static_cast<ElementKind>(found - types.begin());

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "pcbmesh/base/error.hpp"
@@ -50,6 +51,33 @@ void MeshAssembly::add_element(ElementKind kind, std::span<const std::int64_t> n
   }
   blocks_.add(kind, tag, std::span(indices).first(nodes.size()));
   ++num_elements_;
+}
+
+void MeshAssembly::set_tag_of_cell(ElementKind kind, std::span<const std::int64_t> nodes, std::int32_t tag,
+                                   std::int64_t first_node) {
+  using Key = std::array<std::int64_t, 8>;
+  const auto key_of = [](std::span<const std::int64_t> corners, std::int64_t first) {
+    Key key;
+    key.fill(-1);
+    for (std::size_t i = 0; i < corners.size(); ++i) key[i] = corners[i] + first;
+    std::sort(key.begin(), key.end());
+    return key;
+  };
+  mesh::CellBlock& cells = blocks_.cells(kind);
+  const auto n = static_cast<std::size_t>(mesh::corners_of(kind));
+  auto& [num_known, index_of] = cells_by_corners_[kind];
+  if (num_known != cells.size()) {
+    index_of.clear();
+    for (std::size_t i = 0; i < cells.tags.size(); ++i)
+      index_of.emplace(key_of(std::span(cells.corners).subspan(i * n, n), 0), i);
+    num_known = cells.size();
+  }
+  const auto found = index_of.find(key_of(nodes.first(n), first_node));
+  if (found == index_of.end())
+    throw Error(ErrorCode::file_syntax,
+                fmt::format("a grid of tags gives {} to a cell that is not in the mesh, with node {}", tag, nodes.front()),
+                {.file = file_.string()});
+  cells.tags[found->second] = tag;
 }
 
 void MeshAssembly::turn_wedges_if_inside_out() {

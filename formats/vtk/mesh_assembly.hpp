@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,6 +27,8 @@ class MeshAssembly {
   /// @throws Error file_syntax (202) for numbers without a node.
   void add_element(mesh::ElementKind kind, std::span<const std::int64_t> nodes, std::span<const std::uint8_t> order,
                    std::int32_t tag, std::int64_t first_node = 0);
+  /// Gives the cell of these corners, added before, its tag. @throws Error file_syntax (202) if there is no such cell.
+  void set_tag_of_cell(mesh::ElementKind kind, std::span<const std::int64_t> nodes, std::int32_t tag, std::int64_t first_node);
   void add_point_or_line(bool is_line) { ++mesh_.num_other_elements[is_line ? 1 : 0]; }
   void add_name(int dimension, std::int32_t tag, std::string name) { mesh_.names.push_back({dimension, tag, std::move(name)}); }
   /// Turns all wedges of first order round if most of them are inside out: VTK changed its mind about their corners, and files
@@ -38,6 +41,11 @@ class MeshAssembly {
   mesh::MeshData mesh_;
   ElementBlocks blocks_;
   std::int64_t num_elements_ = 0;
+  struct KnownCells {
+    std::int64_t num_known = 0;
+    std::map<std::array<std::int64_t, 8>, std::size_t> index_of;  ///< by sorted corners
+  };
+  std::map<mesh::ElementKind, KnownCells> cells_by_corners_;  ///< made when tags come in a grid of their own
 };
 
 }  // namespace pcbmesh::formats::vtk

@@ -38,6 +38,7 @@ class Reader {
   }
   void read_grids(const XmlElement& parent);
   void read_grid(const XmlElement& grid);
+  void read_tags_grid(const XmlElement& grid);
   [[nodiscard]] const XmlElement& item_of(const XmlElement& owner) const;
   template <class Value>
   [[nodiscard]] std::vector<Value> numbers(const XmlElement& owner);
@@ -137,7 +138,10 @@ std::int64_t Reader::points_of(const XmlElement& grid) {
 }
 
 std::vector<std::int64_t> Reader::tags_of(const XmlElement& grid) {
-  for (const std::string_view name : {"volume_tag", "face_tag", "gmsh:physical", "material", "attribute"})
+  // dolfinx names the values of a grid of tags as the grid.
+  for (const std::string_view name :
+       {std::string_view("volume_tag"), std::string_view("face_tag"), std::string_view("gmsh:physical"),
+        std::string_view("material"), std::string_view("attribute"), grid.attribute("Name")})
     for (const XmlElement& attribute : grid.children) {
       if (attribute.name != "Attribute" || attribute.attribute("Name") != name || attribute.attribute("Center") != "Cell")
         continue;
@@ -150,7 +154,26 @@ std::vector<std::int64_t> Reader::tags_of(const XmlElement& grid) {
   return {};
 }
 
+/// Grids without points of their own, as dolfinx writes them: those of tags hold cells of the grid before, or its faces, once
+/// more, with values under the name of the grid; those of functions have no elements either, and nothing for a mesh.
+void Reader::read_tags_grid(const XmlElement& grid) {
+  const XmlElement* topology = grid.child("Topology");
+  if (topology == nullptr) return;
+  if (first_node_.size() != 1) fail(grid, "a grid without points of its own needs exactly one grid with points before it");
+  const auto refuse = [&](const std::string& text) { fail(*topology, text); };
+  const std::string_view type = topology->attribute("TopologyType");
+  const std::vector<std::int64_t> nodes = numbers<std::int64_t>(*topology), tags = tags_of(grid);
+  const auto kind = kind_of(type);
+  if (!kind || mesh::dimension_of(*kind) != 3) return add_elements(mesh_, type, nodes, tags, refuse);
+  const auto width = static_cast<std::size_t>(mesh::nodes_of(*kind));
+  if (nodes.size() != tags.size() * width)
+    refuse(fmt::format("holds {} node numbers, but there are {} tags", nodes.size(), tags.size()));
+  for (std::size_t i = 0; i < tags.size(); ++i)
+    mesh_.set_tag_of_cell(*kind, std::span(nodes).subspan(i * width, width), static_cast<std::int32_t>(tags[i]), 0);
+}
+
 void Reader::read_grid(const XmlElement& grid) {
+  if (grid.child("Geometry") == nullptr && grid.child("xi:include") != nullptr) return read_tags_grid(grid);
   has_grid_ = true;
   const std::int64_t first_node = points_of(grid);
   const XmlElement* topology = grid.child("Topology");

@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <optional>
-
 #include "formats/vtk/cells.hpp"
 #include "pcbmesh/base/error.hpp"
 
@@ -76,14 +74,19 @@ void add_mixed(vtk::MeshAssembly& mesh, std::span<const std::int64_t> numbers, s
 
 }  // namespace
 
+std::optional<ElementKind> kind_of(std::string_view topology) {
+  const std::string name = lower_case(topology);
+  for (const Kind& known : kinds)
+    if (known.name == name) return known.kind;
+  return std::nullopt;
+}
+
 void add_elements(vtk::MeshAssembly& mesh, std::string_view topology, std::span<const std::int64_t> numbers,
                   std::span<const std::int64_t> tags, const std::function<void(const std::string&)>& fail,
                   std::int64_t first_node) {
   const std::string name = lower_case(topology);
   if (name == "mixed") return add_mixed(mesh, numbers, tags, fail, first_node);
-  std::optional<ElementKind> kind;
-  for (const Kind& known : kinds)
-    if (known.name == name) kind = known.kind;
+  const std::optional<ElementKind> kind = kind_of(topology);
   if (!kind) {
     fail(fmt::format("topology '{}' is not read", topology.substr(0, 40)));
     return;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -10,6 +11,9 @@
 #include "formats/vtk/mesh_assembly.hpp"
 
 namespace pcbmesh::formats::xdmf {
+
+/// By XDMF's name of the kind, in any case; nothing for "Mixed" and kinds that are not read.
+[[nodiscard]] std::optional<mesh::ElementKind> kind_of(std::string_view topology);
 
 /// Adds the elements of an XDMF topology. @param topology  XDMF's name of the kind, in any case, or "Mixed". Wedges stand in
 /// Gmsh's order. @param tags  one per element, or empty. @param fail  throws.

@@ -67,6 +67,8 @@ void say_what_is_lost(const mesh::MeshData& mesh, const mesh::MeshDataSource& re
     if (mesh.num_other_elements[i] > 0)
       note(fmt::format("{} {} of the input are left out; meshes here hold faces and cells", mesh.num_other_elements[i],
                        others[i]));
+  if (!mesh.periodic.empty())
+    note(fmt::format("{} periodic links of the input are left out; no writer here has a word for them", mesh.periodic.size()));
   if (read.num_untagged_cells() > 0)
     note(fmt::format("{} cells have no tag; they are written as the group 'untagged'", read.num_untagged_cells()));
   std::int64_t num_faces = 0;

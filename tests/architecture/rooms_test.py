@@ -60,8 +60,8 @@ def check_arrows():
                 target = target_room(found.group(1))
                 if target is not None and target not in allowed[room]:
                     faults.append(f"{path.relative_to(ROOT)}:{number}: room '{room}' may not include '{target}'")
-            if "CGAL/" in line and "include" in line and room != "triangulate":
-                faults.append(f"{path.relative_to(ROOT)}:{number}: only the room triangulate includes CGAL")
+            if "CGAL/" in line and "include" in line and room != "triangulate" and path != ROOT / "validation/checks/orientation.cpp":
+                faults.append(f"{path.relative_to(ROOT)}:{number}: only the room triangulate and the judge's exact sign include CGAL")
     if seen < 100:
         faults.append(f"only {seen} includes seen: the check looks in the wrong place")
 

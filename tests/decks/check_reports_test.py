@@ -107,6 +107,72 @@ class Reports(unittest.TestCase):
                 self.assertEqual(urllib.parse.unquote(urllib.parse.urlparse(uri).path), str(self.bad))
                 self.assertNotRegex(uri, r"[<> ]")
 
+    def test_sarif_has_the_objects_of_its_standard(self):
+        """Debian's classes are generated from the published schema: each object of ours has only its names and all that it must have."""
+        try:
+            import attr
+            import sarif_om as om
+        except ImportError as missing:
+            self.skipTest(str(missing))
+        below = {om.SarifLog: {"runs": om.Run}, om.Run: {"tool": om.Tool, "results": om.Result}, om.Tool: {"driver": om.ToolComponent},
+                 om.ToolComponent: {"rules": om.ReportingDescriptor},
+                 om.ReportingDescriptor: {"shortDescription": om.MultiformatMessageString, "help": om.MultiformatMessageString,
+                                          "defaultConfiguration": om.ReportingConfiguration},
+                 om.Result: {"message": om.Message, "locations": om.Location},
+                 om.Location: {"physicalLocation": om.PhysicalLocation, "logicalLocations": om.LogicalLocation},
+                 om.PhysicalLocation: {"artifactLocation": om.ArtifactLocation}}
+        seen = set()
+
+        def look(value, kind):
+            seen.add(kind)
+            fields = {field.metadata["schema_property_name"]: field for field in attr.fields(kind)}
+            self.assertLessEqual(set(value), set(fields), kind)
+            self.assertFalse([name for name, field in fields.items() if field.default is attr.NOTHING and name not in value], kind)
+            for name, inner in value.items():
+                kind_below = below.get(kind, {}).get(name)
+                for one in inner if isinstance(inner, list) else [inner]:
+                    self.assertEqual(isinstance(one, dict), kind_below is not None, (kind, name))
+                    if kind_below:
+                        look(one, kind_below)
+
+        look(json.loads(self.names["sarif"].read_text()), om.SarifLog)
+        self.assertEqual(seen, set(below) | {kind for names in below.values() for kind in names.values()})
+        self.assertRaises(AssertionError, look, {"version": "2.1.0", "run": []}, om.SarifLog)
+
+    # The elements of JUnit's reports that CI systems agree on: what each must have, may have besides, and what may stand in it, in order.
+    JUNIT = {"testsuites": ({"tests", "failures"}, {"name", "errors", "disabled", "time"}, ("testsuite",)),
+             "testsuite": ({"name", "tests", "failures", "errors"}, {"skipped", "disabled", "time", "timestamp", "hostname", "id", "package"},
+                           ("properties", "testcase", "system-out", "system-err")),
+             "testcase": ({"name", "classname"}, {"time", "assertions", "status"}, ("skipped", "error", "failure", "system-out", "system-err")),
+             "failure": (set(), {"message", "type"}, ()), "system-out": (set(), set(), ())}
+
+    def test_junit_has_the_elements_others_read(self):
+        def look(element):
+            must, may, inside = self.JUNIT[element.tag]
+            self.assertLessEqual(must, set(element.attrib), element.tag)
+            self.assertLessEqual(set(element.attrib), must | may, element.tag)
+            places = [inside.index(child.tag) for child in element]
+            self.assertEqual(places, sorted(places), element.tag)
+            for name in ("tests", "failures", "errors", "skipped"):
+                self.assertGreaterEqual(int(element.get(name, "0")), 0)
+            self.assertGreaterEqual(float(element.get("time", "0")), 0)
+            for child in element:
+                look(child)
+
+        look(xml.etree.ElementTree.parse(self.names["junit"]).getroot())
+
+    def test_junit_read_by_another_program(self):
+        try:
+            import junitparser
+        except ImportError as missing:
+            self.skipTest(str(missing))
+        report = junitparser.JUnitXml.fromfile(str(self.names["junit"]))
+        failed = {case.name for suite in report for case in suite if any(isinstance(one, junitparser.Failure) for one in case.result)}
+        self.assertEqual(failed, {f["code"] for f in self.report["findings"] if f["severity"] == "error"})
+        before = report.tests, report.failures, report.errors
+        report.update_statistics()  # counts again what it has read
+        self.assertEqual((report.tests, report.failures, report.errors), before)
+
     def test_html_is_whole_and_loads_nothing(self):
         text = Text()
         text.feed(self.names["html"].read_text())

@@ -3,12 +3,14 @@
 """Meshes that other programs made, good ones and ones that other programs broke: pcbmesh check judges them, alone and by profile."""
 import json
 import pathlib
+import re
+import shlex
 import sys
 import tempfile
 import unittest
 import xml.etree.ElementTree
 
-from program import SKIPPED, run
+from program import ROOT, SKIPPED, run
 
 try:
     import gmsh
@@ -110,6 +112,33 @@ class ForeignMeshes(unittest.TestCase):
             failed = [case.get("name") for case in xml.etree.ElementTree.parse(report).getroot().iter("testcase") if case.find("failure") is not None]
             self.assertEqual(failed, [code])
 
+    def test_the_very_commands_of_the_readme(self):
+        """The block under "In CI", run as it stands, on a mesh of Gmsh and on one of our own."""
+        block = re.search(r"## In CI\n```sh\n(.*?)```", (ROOT / "README.md").read_text(), re.S)[1]
+        commands = [shlex.split(line) for line in block.splitlines() if line.startswith("pcbmesh ")]
+        self.assertEqual(commands[0], "pcbmesh check mesh.msh --profile palace --junit report.xml".split())
+        self.assertEqual(len(commands), 3)
+        gmsh_box(self.out / "mesh.msh", 2.2, True)
+        (self.out / "limits.json").write_text('{"schema_version": 1, "min_face_angle_deg": 5}')
+        made = run("mesh", ROOT / "examples/microstrip.json", "-o", self.out / "usb.msh", "--quiet")
+        self.assertEqual(made.returncode, 0, made.stderr)
+        # Gmsh turns some tagged faces inwards: a warning, on which the second command fails as it says.
+        for command, code in zip(commands, (0, 1, 0)):
+            done = run(*command[1:], cwd=self.out)
+            self.assertEqual(done.returncode, code, (command, done.stdout, done.stderr))
+            if code:
+                self.assertIn("face.tagged_inward", done.stdout)
+        self.assertLessEqual({"report.xml", "report.sarif", "report.html", "bad.vtu"}, {file.name for file in self.out.iterdir()})
+        # The gate closes: a cell of the foreign mesh turned inside out fails the same command, and the report says where.
+        lines = (self.out / "mesh.msh").read_text().splitlines()
+        first = next(i for i, line in enumerate(lines) if line.split()[1:3] == ["6", "2"])
+        words = lines[first].split()
+        lines[first] = " ".join(words[:5] + words[-3:] + words[-6:-3])
+        (self.out / "mesh.msh").write_text("\n".join(lines) + "\n")
+        self.assertEqual(run(*commands[0][1:], cwd=self.out).returncode, 1)
+        failed = [case.get("name") for case in xml.etree.ElementTree.parse(self.out / "report.xml").getroot().iter("testcase") if case.find("failure") is not None]
+        self.assertIn("cell.inverted", failed)
+
     def test_each_profile_on_prisms_and_tetrahedra_of_gmsh(self):
         prisms = gmsh_box(self.out / "prisms.msh", 2.2, True)
         tets = gmsh_box(self.out / "tets.msh", 2.2, False, binary=True)
@@ -119,6 +148,69 @@ class ForeignMeshes(unittest.TestCase):
                 self.assertEqual(errors(self.check(prisms, "--profile", profile)), on_prisms)
                 self.assertEqual(errors(self.check(tets, "--profile", profile)), on_tets)
         self.assertEqual(run("check", prisms, "--profile", "hfss").returncode, 2)
+
+    def gmsh_periodic_box(self, file, version, binary, groups=True):
+        """Tetrahedra; the side x = 2 is the side x = 0 moved."""
+        gmsh.clear()
+        geo = gmsh.model.geo
+        points = [geo.addPoint(x, y, 0, 0.4) for x, y in ((0, 0), (2, 0), (2, 1), (0, 1))]
+        lines = [geo.addLine(points[i], points[(i + 1) % 4]) for i in range(4)]
+        base = geo.addPlaneSurface([geo.addCurveLoop(lines)])
+        out = geo.extrude([(2, base)], 0, 0, 0.7)
+        geo.synchronize()
+        high, low = out[3][1], out[5][1]
+        gmsh.model.mesh.setPeriodic(2, [high], [low], [1, 0, 0, 2, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1])
+        if groups:
+            name = gmsh.model.setPhysicalName
+            name(3, gmsh.model.addPhysicalGroup(3, [out[1][1]], 1), "box")
+            name(2, gmsh.model.addPhysicalGroup(2, [low], 1), "low")
+            name(2, gmsh.model.addPhysicalGroup(2, [high], 2), "high")
+            name(2, gmsh.model.addPhysicalGroup(2, [base, out[0][1], out[2][1], out[4][1]], 3), "outer")
+        gmsh.option.setNumber("Mesh.MeshSizeMax", 0.4)
+        gmsh.model.mesh.generate(3)
+        gmsh.option.setNumber("Mesh.MshFileVersion", version)
+        gmsh.option.setNumber("Mesh.Binary", 1 if binary else 0)
+        gmsh.write(str(file))
+        return file
+
+    def test_periodic_sides_of_gmsh(self):
+        file = self.out / "p.msh"
+        for version in (2.2, 4.1):
+            for binary in (False, True):
+                for groups in (True, False):
+                    with self.subTest(version=version, binary=binary, groups=groups):
+                        done = self.check(self.gmsh_periodic_box(file, version, binary, groups))
+                        looked = next(c["num_examined"] for c in json.loads(done.stdout)["checks"] if c["name"] == "periodic")
+                        self.assertGreater(looked, 40)
+                        self.assertFalse([code for code in codes(done) if code.startswith("periodic.")])
+
+    def test_periodic_sides_damaged(self):
+        for version in (2.2, 4.1):
+            whole = self.gmsh_periodic_box(self.out / "p.msh", version, False).read_text()
+            head, links = whole.split("$Periodic\n")
+            rows = links.splitlines()
+            first = next(i for i, row in enumerate(rows) if len(row.split()) == 3 and row.startswith("2 ")) + 3  # the pairs of the surfaces come behind transformation and count
+            for damage, expected in (
+                    (lambda r: r[:first - 1] + [str(int(r[first - 1]) - 1)] + r[first + 1:], {"periodic.unmatched"}),
+                    (lambda r: r[:first] + [f"{r[first].split()[0]} 99999"] + r[first + 1:], {"periodic.unmatched", "periodic.link"}),
+                    (lambda r: r[:first] + [f"{r[first].split()[0]} {r[first + 1].split()[1]}"] + r[first + 1:], {"periodic.unmatched", "periodic.link", "periodic.moved"})):
+                (self.out / "d.msh").write_text(head + "$Periodic\n" + "\n".join(damage(rows)) + "\n")
+                with self.subTest(version=version, expected=expected):
+                    self.assertEqual(set(errors(self.check(self.out / "d.msh"))), expected)
+
+    def test_second_order_of_gmsh(self):
+        file = self.out / "o.msh"
+        gmsh_box(file, 2.2, True)
+        for incomplete, nodes in ((1, 15), (0, 18)):
+            gmsh.option.setNumber("Mesh.SecondOrderIncomplete", incomplete)
+            gmsh.model.mesh.setOrder(1)
+            gmsh.model.mesh.setOrder(2)
+            gmsh.write(str(file))
+            for profile, code in (("palace", "incomplete_elements"), ("mfem", "incomplete_elements"), ("getdp", "second_order_prisms"), ("elmer", "second_order_prisms")):
+                expected = [] if nodes == 18 and code == "incomplete_elements" else [f"profile.{profile}.{code}"]
+                with self.subTest(profile=profile, nodes=nodes):
+                    self.assertEqual(errors(self.check(file, "--profile", profile)), expected)
+        gmsh.option.setNumber("Mesh.SecondOrderIncomplete", 0)
 
     def test_gmsh_files_with_elements_of_no_group(self):
         """Saved with SaveAll, a file of Gmsh has no groups at all; one element without a group beside others stops MFEM's reader."""

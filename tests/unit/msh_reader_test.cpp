@@ -203,7 +203,7 @@ std::string gmsh_like_41() {
       .ints(3, 3, 4)
       .sizes(1)
       .sizes(20, 2, 1, 9, 5)
-      .text("\n$EndElements\n$Periodic\n\x01$\x02\n$EndPeriodic\n");
+      .text("\n$EndElements\n$NodeData\n\x01$\x02\n$EndNodeData\n");
 }
 
 TEST(MshReader, ReadsGroupsThroughEntitiesIn41) {
@@ -215,6 +215,46 @@ TEST(MshReader, ReadsGroupsThroughEntitiesIn41) {
   EXPECT_EQ(mesh.cells.at(0).tags, (std::vector<std::int32_t>{77, 0}));
   EXPECT_EQ(mesh.cells.at(0).corners, (std::vector<std::int64_t>{0, 1, 2, 3, 1, 0, 2, 4}));
   EXPECT_EQ(mesh.num_other_elements[0], 1);
+}
+
+/// A tetrahedron with two of its faces: one of a group, one of none, said to be each other's partner.
+std::string linked_22(const std::string& periodic) {
+  return head_22 +
+         "$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n$EndNodes\n"
+         "$Elements\n3\n1 2 2 5 11 1 3 2\n2 2 2 0 12 1 2 4\n3 4 2 7 1 1 2 3 4\n$EndElements\n" +
+         periodic;
+}
+
+TEST(MshReader, ReadsPeriodicLinksOfSurfacesWithTheirFaces) {
+  const mesh::MeshData mesh = read_text(linked_22(
+      "$Periodic\n3\n0 1 2\n1\n1 2\n2 11 12\nAffine 1 0 0 3 0 1 0 0 0 0 1 0.5 0 0 0 1\n3\n1 1\n2 2\n3 99\n2 12 13\n0\n"
+      "$EndPeriodic\n"));
+  ASSERT_EQ(mesh.periodic.size(), 2u);  // links of points and curves are passed over
+  const mesh::PeriodicLink& link = mesh.periodic[0];
+  EXPECT_NE(link.name.find("11"), std::string::npos);
+  EXPECT_EQ(link.nodes, (std::vector<std::array<std::int64_t, 2>>{{0, 0}, {1, 1}, {2, -1}}));
+  ASSERT_TRUE(link.from_partner);
+  EXPECT_EQ(*link.from_partner, (std::array<double, 12>{1, 0, 0, 3, 0, 1, 0, 0, 0, 0, 1, 0.5}));
+  ASSERT_EQ(link.faces.size(), 1u);
+  EXPECT_EQ(link.faces[0].corners, (std::vector<std::int64_t>{0, 2, 1}));
+  ASSERT_EQ(link.partner_faces.size(), 1u);  // of no group, and so not among MeshData::faces
+  EXPECT_EQ(link.partner_faces[0].corners, (std::vector<std::int64_t>{0, 1, 3}));
+  EXPECT_FALSE(mesh.periodic[1].from_partner);
+  EXPECT_TRUE(mesh.periodic[1].partner_faces.empty());
+}
+
+TEST(MshReader, SaysWhatIsWrongWithPeriodicLinks) {
+  for (const auto& [periodic, word] :
+       std::vector<std::array<std::string, 2>>{{"$Periodic\n1\n3 11 12\n0\n$EndPeriodic\n", "dimension 3"},
+                                               {"$Periodic\n1\n2 11 12\nRotation 1\n$EndPeriodic\n", "'Rotation'"},
+                                               {"$Periodic\n1\n2 11 12\n4000000000\n1 1\n$EndPeriodic\n", "nodes of a link"},
+                                               {"$Periodic\n2\n2 11 12\n1\n1 1\n$EndPeriodic\n", "$EndPeriodic"},
+                                               {"$Periodic\n1\n2 11 12\nAffine 1 0 0 x\n$EndPeriodic\n", "'x'"}}) {
+    const Error error = error_of(linked_22(periodic));
+    EXPECT_TRUE(error.code() == ErrorCode::file_syntax || error.code() == ErrorCode::file_truncated) << error.what();
+    EXPECT_NE(error.text().find(word), std::string::npos) << "expected '" << word << "' in: " << error.what();
+    EXPECT_GT(error.spot().line, 0) << error.what();
+  }
 }
 
 TEST(MshReader, ReadsPackedFiles) {
@@ -315,7 +355,7 @@ std::vector<std::string> small_files() {
 TEST(MshReader, AFileCutAnywhereIsAnError) {
   const Folder folder;
   for (const std::string& whole : small_files()) {
-    const bool has_more = whole.find("$Periodic") != std::string::npos;
+    const bool has_more = whole.find("$NodeData") != std::string::npos;
     const std::size_t needed = has_more ? whole.find("$EndElements") + 12 : whole.size() - 1;
     for (std::size_t size = 0; size < needed; ++size) {
       create(folder / "a.msh", std::string_view(whole).substr(0, size));

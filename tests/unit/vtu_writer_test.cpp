@@ -266,7 +266,7 @@ TEST(VtuReader, SaysWhatIsWrong) {
   expect("NumberOfCells=\"1\"", "NumberOfCells=\"-1\"", "no sensible count");
   expect("UnstructuredGrid\" v", "PolyData\" v", "no VTK unstructured grid");
   expect("1 0 0 0 1 0", "1 0 0 0 x 0", "value 7 is no number");
-  expect("<VTKFile", "<!DOCTYPE a [<!ENTITY b \"c\">]><VTKFile", "document type");
+  expect("<VTKFile", "<!DOCTYPE a [<!ENTITY b \"c\">]><VTKFile", "declares entities");
 }
 
 }  // namespace

@@ -60,6 +60,7 @@ void check_boundary_edges(const Context& context, const FaceMatch& match, Report
           const auto n = static_cast<std::size_t>(context.corners_of_half_face(half_face, corners));
           for (std::size_t k = 0; k < n; ++k) {
             const std::int64_t a = corners[k], b = corners[k + 1 == n ? 0 : k + 1];
+            if (a == b) continue;  // of a degenerate face: not an edge
             emit(std::min(a, b) >> shift, BoundaryEdge{std::min(a, b), std::max(a, b), half_face << 1 | (a > b ? 1 : 0)});
           }
         }

@@ -5,16 +5,18 @@
 
 #include "validation/checks/cell_geometry.hpp"
 #include "validation/checks/checks.hpp"
+#include "validation/checks/orientation.hpp"
 #include "validation/checks/parallel.hpp"
 
 namespace pcbmesh::validation::checks {
 namespace {
 
-// A corner flatter than this relative to its edges is flat: the rounding of the triple product itself is about 1e-15.
-constexpr double flat_corner = 1e-14;
+// The rounding of a corner's triple product is below 1e-15 of its edges' lengths (see orientation): beyond this its sign is
+// certain, below it exact arithmetic decides.
+constexpr double certain_corner = 1e-14;
 
 struct CellTallies {
-  Tally inverted, folded, flat;
+  Tally inverted, folded, flat, nearly_flat;
 };
 
 /// Sums of one slice of cells, by tag slot in the order met.
@@ -40,11 +42,11 @@ struct SliceSums {
   }
 };
 
-enum class Shape { fine, inverted, folded, flat };
+enum class Shape { fine, inverted, folded, flat, nearly_flat };
 
 template <mesh::CellKind kind>
 Shape judge_corners(const std::array<Vector3, 8>& at) {
-  int negative = 0, flat = 0, corners = 0;
+  int negative = 0, flat = 0, doubtful = 0, corners = 0;
   for (const CornerFrame& frame : frames_of<kind>()) {
     const auto point = [&](int i) -> const Vector3& { return at[static_cast<std::size_t>(i)]; };
     const Vector3 a = point(frame.e1) - point(frame.at);
@@ -53,16 +55,19 @@ Shape judge_corners(const std::array<Vector3, 8>& at) {
     const double jacobian = triple(a, b, c);
     const double scale = dot(a, a) * dot(b, b) * dot(c, c);
     ++corners;
-    // Written so that an underflow to zero counts as flat.
-    if (!(jacobian * jacobian > flat_corner * flat_corner * scale)) {
-      ++flat;
-    } else if (jacobian < 0) {
-      ++negative;
+    int sign = jacobian > 0 ? 1 : -1;
+    // Written so that an underflow to zero and an overflow are in doubt.
+    if (!(jacobian * jacobian > certain_corner * certain_corner * scale)) {
+      ++doubtful;
+      sign = orientation_exact(point(frame.at), point(frame.e1), point(frame.e2), point(frame.e3));
     }
+    negative += sign < 0 ? 1 : 0;
+    flat += sign == 0 ? 1 : 0;
   }
   if (negative == corners) return Shape::inverted;
   if (negative > 0) return Shape::folded;
-  return flat > 0 ? Shape::flat : Shape::fine;
+  if (flat > 0) return Shape::flat;
+  return doubtful > 0 ? Shape::nearly_flat : Shape::fine;
 }
 
 template <mesh::CellKind kind>
@@ -82,6 +87,9 @@ void judge_slice(const Context& context, const mesh::CellBlock& block, std::int6
         break;
       case Shape::flat:
         tallies.flat.add(first_id + i);
+        break;
+      case Shape::nearly_flat:
+        tallies.nearly_flat.add(first_id + i);
         break;
     }
     sums.add(context.cell_tags.slot(block.tags[index]), volume_of<kind>(at), place_of_slot);
@@ -116,6 +124,7 @@ VolumeSums check_cells(const Context& context, Report& report) {
       all.inverted.merge(mine.inverted);
       all.folded.merge(mine.folded);
       all.flat.merge(mine.flat);
+      all.nearly_flat.merge(mine.nearly_flat);
     }
     for (const SliceSums& slice : sums) {
       for (std::size_t k = 0; k < slice.slots.size(); ++k) {
@@ -142,6 +151,10 @@ VolumeSums check_cells(const Context& context, Report& report) {
   log.found("cell.flat", FindingSeverity::error,
             fmt::format("{} cells have a corner of no volume: coinciding corners or edges in one plane", all.flat.count()),
             all.flat, PlaceKind::cell);
+  log.found("cell.nearly_flat",
+            fmt::format("{} cells have a corner whose volume is positive, but smaller than the rounding of doubles",
+                        all.nearly_flat.count()),
+            all.nearly_flat, PlaceKind::cell);
   return result;
 }
 

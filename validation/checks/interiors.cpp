@@ -13,7 +13,9 @@
 #include <optional>
 
 #include "validation/checks/box_tree.hpp"
+#include "validation/checks/cell_shapes.hpp"
 #include "validation/checks/checks.hpp"
+#include "validation/checks/orientation.hpp"
 #include "validation/checks/parallel.hpp"
 
 namespace pcbmesh::validation::checks {
@@ -23,7 +25,7 @@ struct Triangle {
   Vector3 a, b, c;
 };
 
-/// A boundary face as one or two triangles, counter-clockwise from outside.
+/// A face of a cell as one or two triangles, counter-clockwise from outside.
 int triangles_of(const Context& context, std::int64_t half_face, std::array<Triangle, 2>& out) {
   std::array<std::int64_t, 4> ids{};
   const int n = context.corners_of_half_face(half_face, ids);
@@ -34,25 +36,17 @@ int triangles_of(const Context& context, std::int64_t half_face, std::array<Tria
   return 2;
 }
 
-/// +1 or -1 for a ray that leaves or enters through the triangle, 0 for a miss, nothing if it passes too close to an edge
-/// for rounding to tell.
-std::optional<int> crossing_of(const Triangle& t, const Vector3& from, const Vector3& along) {
-  constexpr double doubt = 1e-9;
-  const Vector3 a = t.a - from, b = t.b - from, c = t.c - from;
-  const double u = triple(along, b, c), v = triple(along, c, a), w = triple(along, a, b);
-  const double scale = std::abs(u) + std::abs(v) + std::abs(w);
-  if (scale == 0) return std::nullopt;
-  const double low = std::min({u, v, w}), high = std::max({u, v, w});
-  if (low < -doubt * scale && high > doubt * scale) return 0;
-  if (std::min(std::abs(u), std::min(std::abs(v), std::abs(w))) <= doubt * scale) {
-    // On an edge's line, but perhaps beyond its ends: two clear signs that differ are a miss all the same (seen above).
-    return std::nullopt;
-  }
-  // The sign of the sum tells the side; the place along the ray whether it lies ahead.
-  const double sum = u + v + w, ahead = triple(a, b, c);
-  if (ahead == 0) return std::nullopt;
-  if ((ahead > 0) != (sum > 0)) return 0;
-  return sum > 0 ? 1 : -1;
+/// +1 or -1 for a ray that leaves or enters through the triangle, 0 for a miss, nothing if it meets an edge or corner of it
+/// or starts on it. Exact.
+std::optional<int> crossing_of(const Triangle& t, const Vector3& from, const Vector3& to) {
+  const int u = orientation(from, to, t.a, t.b), v = orientation(from, to, t.b, t.c);
+  if (u * v < 0) return 0;
+  const int w = orientation(from, to, t.c, t.a);
+  if (u * w < 0 || v * w < 0) return 0;
+  if (u == 0 || v == 0 || w == 0) return std::nullopt;
+  const int start = orientation(t.a, t.b, t.c, from), end = orientation(t.a, t.b, t.c, to);
+  if (start == 0 || end == 0) return std::nullopt;
+  return start == end ? 0 : end;
 }
 
 class Windings {
@@ -73,18 +67,17 @@ class Windings {
  private:
   [[nodiscard]] std::optional<int> along_ray(const Vector3& point, const double (&slope)[2]) const {
     const double rise = 1.01 * (context_.high[2] - point[2]) + context_.tolerance;
-    const Vector3 along{slope[0] * rise, slope[1] * rise, rise};
-    Box box{point, point};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      (along[axis] < 0 ? box.low : box.high)[axis] += along[axis];
-    }
+    const Vector3 to{point[0] + slope[0] * rise, point[1] + slope[1] * rise, point[2] + rise};
+    Box box;
+    box.add(point);
+    box.add(to);
     int winding = 0;
     bool clear = true;
     std::array<Triangle, 2> triangles;
     tree_.each_meeting(box, [&](std::size_t i) {
       const int n = triangles_of(context_, faces_[i], triangles);
       for (int k = 0; k < n && clear; ++k) {
-        const auto crossing = crossing_of(triangles[static_cast<std::size_t>(k)], point, along);
+        const auto crossing = crossing_of(triangles[static_cast<std::size_t>(k)], point, to);
         clear = crossing.has_value();
         winding += crossing.value_or(0);
       }
@@ -107,27 +100,45 @@ Vector3 centre_of(const Context& context, std::span<const std::int64_t> corners)
   return sum;
 }
 
-/// A point of the face's cell, close behind the middle of the face.
-Vector3 point_behind(const Context& context, std::int64_t half_face) {
+/// Behind the face itself in both its triangles, behind every other face of its cell in one at least: those may be bent.
+bool is_inside_cell(const Context& context, std::int64_t half_face, const Vector3& at) {
+  const std::int64_t cell = half_face >> 3;
+  const auto num_faces = faces_of(context.mesh.cells[context.locate_cell(cell).first].kind).size();
+  std::array<Triangle, 2> triangles;
+  for (std::size_t face = 0; face < num_faces; ++face) {
+    const std::int64_t here = cell << 3 | static_cast<std::int64_t>(face);
+    const int n = triangles_of(context, here, triangles);
+    int behind = 0;
+    for (int k = 0; k < n; ++k) {
+      const Triangle& t = triangles[static_cast<std::size_t>(k)];
+      behind += orientation(t.a, t.b, t.c, at) < 0 ? 1 : 0;
+    }
+    if (behind < (here == half_face ? n : 1)) return false;
+  }
+  return true;
+}
+
+/// How often space is filled close behind the middle of a face; nothing if it can't be told.
+std::optional<int> winding_behind(const Context& context, const Windings& windings, std::int64_t half_face) {
   std::array<std::int64_t, 4> ids{};
   const auto n = static_cast<std::size_t>(context.corners_of_half_face(half_face, ids));
   const Vector3 middle = centre_of(context, context.corners_of_cell(half_face >> 3));
-  Vector3 at = centre_of(context, std::span(ids).first(n));
-  for (std::size_t axis = 0; axis < 3; ++axis) at[axis] += 0.05 * (middle[axis] - at[axis]);
-  return at;
+  const Vector3 face = centre_of(context, std::span(ids).first(n));
+  // A bent face may bulge beyond the first, and either may lie on a face of another cell; the last is the middle of the cell.
+  for (const double depth : {0.05, 0.31, 1.0}) {
+    Vector3 at = face;
+    for (std::size_t axis = 0; axis < 3; ++axis) at[axis] += depth * (middle[axis] - face[axis]);
+    if (!is_inside_cell(context, half_face, at)) continue;
+    if (const auto winding = windings.at(at)) return winding;
+  }
+  return std::nullopt;
 }
 
 Box box_of(const Context& context, std::int64_t half_face) {
   std::array<std::int64_t, 4> ids{};
   const auto n = static_cast<std::size_t>(context.corners_of_half_face(half_face, ids));
-  Box box{context.mesh.nodes[static_cast<std::size_t>(ids[0])], context.mesh.nodes[static_cast<std::size_t>(ids[0])]};
-  for (std::size_t i = 1; i < n; ++i) {
-    const Vector3& at = context.mesh.nodes[static_cast<std::size_t>(ids[i])];
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      box.low[axis] = std::min(box.low[axis], at[axis] - context.tolerance);
-      box.high[axis] = std::max(box.high[axis], at[axis] + context.tolerance);
-    }
-  }
+  Box box;
+  for (std::size_t i = 0; i < n; ++i) box.add(context.mesh.nodes[static_cast<std::size_t>(ids[i])], context.tolerance);
   return box;
 }
 
@@ -149,23 +160,37 @@ void check_interiors(const Context& context, const FaceMatch& match, const Volum
   constexpr std::int64_t max_samples = 200'000, samples_per_task = 512;
   const std::int64_t stride = std::max<std::int64_t>(1, (num_faces + max_samples - 1) / max_samples);
   const std::int64_t num_samples = (num_faces + stride - 1) / stride;
-  std::vector<Tally> covered(static_cast<std::size_t>(context.num_threads));
+  struct Tallies {
+    Tally covered, unknown;
+  };
+  std::vector<Tallies> tallies(static_cast<std::size_t>(context.num_threads));
   for_each_task(context.num_threads, (num_samples + samples_per_task - 1) / samples_per_task,
                 [&](int worker, std::int64_t task) {
                   const std::int64_t end = std::min(num_samples, (task + 1) * samples_per_task);
                   for (std::int64_t i = task * samples_per_task; i < end; ++i) {
                     const std::int64_t half_face = match.boundary[static_cast<std::size_t>(i * stride)];
-                    const auto winding = windings.at(point_behind(context, half_face));
-                    if (winding.value_or(1) > 1) covered[static_cast<std::size_t>(worker)].add(half_face >> 3);
+                    const auto winding = winding_behind(context, windings, half_face);
+                    Tallies& mine = tallies[static_cast<std::size_t>(worker)];
+                    if (!winding) mine.unknown.add(half_face >> 3);
+                    if (winding.value_or(1) > 1) mine.covered.add(half_face >> 3);
                   }
                 });
-  Tally all;
-  for (const Tally& mine : covered) all.merge(mine);
+  Tally all, unknown;
+  for (const Tallies& mine : tallies) {
+    all.merge(mine.covered);
+    unknown.merge(mine.unknown);
+  }
   log.examined(num_samples);
   log.found("cell.overlap",
             fmt::format("behind {} of {} boundary faces space is filled more than once: cells lie inside other cells",
                         all.count(), num_samples),
             all, PlaceKind::cell);
+  log.found(
+      "cell.overlap_unknown",
+      fmt::format("behind {} of {} boundary faces it can't be told whether space is filled more than once: the cell is so "
+                  "thin or so bent that its middle is not surely inside",
+                  unknown.count(), num_samples),
+      unknown, PlaceKind::cell);
 }
 
 }  // namespace pcbmesh::validation::checks

@@ -6,6 +6,7 @@
 
 #include "validation/checks/box_tree.hpp"
 #include "validation/checks/checks.hpp"
+#include "validation/checks/orientation.hpp"
 #include "validation/checks/parallel.hpp"
 
 namespace pcbmesh::validation::checks {
@@ -103,15 +104,33 @@ bool overlap(const Patch& f, const Patch& g, double tolerance) {
   return !is_separated(f, g, tolerance) && !is_separated(g, f, tolerance);
 }
 
-bool is_inside(const Patch& patch, const Vector3& at, double tolerance) {
-  for (std::size_t i = 0; i < patch.n; ++i) {
-    if (!(beyond_edge(patch, i, at) < -tolerance)) return false;
-  }
-  return true;
+/// The segment goes through the plane of the triangle, and there through the triangle or an edge of it, but through no
+/// corner: that is a hanging node. Exact.
+bool goes_through(const Vector3& p, const Vector3& q, const Vector3& a, const Vector3& b, const Vector3& c) {
+  if (orientation(a, b, c, p) * orientation(a, b, c, q) >= 0) return false;
+  const int u = orientation(p, q, a, b), v = orientation(p, q, b, c), w = orientation(p, q, c, a);
+  if (u * v < 0 || v * w < 0 || w * u < 0) return false;
+  return (u == 0 ? 1 : 0) + (v == 0 ? 1 : 0) + (w == 0 ? 1 : 0) <= 1;
 }
 
-/// Some edge of `f` that meets `g` at no corner goes through the inside of `g`, deeper than the tolerance on both sides.
-/// The flat polygon with g's normal stands for a quadrangle; a bent one is left alone, its bend is no crossing.
+/// The same for a face. A quadrangle is a patch between its two ways to be split, and crossed where both are.
+bool goes_through(const Vector3& p, const Vector3& q, const Patch& g) {
+  const auto& at = g.at;
+  if (g.n == 3) return goes_through(p, q, at[0], at[1], at[2]);
+  return (goes_through(p, q, at[0], at[1], at[2]) || goes_through(p, q, at[0], at[2], at[3])) &&
+         (goes_through(p, q, at[0], at[1], at[3]) || goes_through(p, q, at[1], at[2], at[3]));
+}
+
+/// Too thin for its normal to be trusted to the tolerance over the length of a face.
+bool is_needle(const Patch& patch) {
+  double longest = 0;
+  for (std::size_t i = 0; i < patch.n; ++i)
+    longest = std::max(longest, length(patch.at[i + 1 == patch.n ? 0 : i + 1] - patch.at[i]));
+  return 2 * patch.area < 1e-6 * longest * longest;
+}
+
+/// Some edge of `f` that meets `g` at no corner goes through `g` or touches an edge of it, however little. Edges that end
+/// within the tolerance of `g` are left to node.hanging and the other codes of near misses.
 bool cuts_through(const Patch& f, const Patch& g, double tolerance) {
   if (g.area == 0) return false;
   std::array<double, 4> height{};
@@ -121,16 +140,15 @@ bool cuts_through(const Patch& f, const Patch& g, double tolerance) {
     above = above || height[i] > tolerance;
     below = below || height[i] < -tolerance;
   }
-  if (!above || !below) return false;
-  if (g.n == 4 && std::abs(dot(g.at[2] - g.at[0], g.normal)) > 0.5 * tolerance) return false;
+  const bool is_flat = g.n == 3 || std::abs(dot(g.at[2] - g.at[0], g.normal)) <= 0.5 * tolerance;
+  const bool is_trusted = is_flat && !is_needle(g);
+  if (is_trusted && (!above || !below)) return false;
   for (std::size_t i = 0; i < f.n; ++i) {
     const std::size_t k = i + 1 == f.n ? 0 : i + 1;
-    if (std::min(height[i], height[k]) >= -tolerance || std::max(height[i], height[k]) <= tolerance) continue;
-    if (g.has(f.ids[i]) || g.has(f.ids[k])) continue;
-    const double part = height[i] / (height[i] - height[k]);
-    Vector3 at = f.at[i];
-    for (std::size_t axis = 0; axis < 3; ++axis) at[axis] += part * (f.at[k][axis] - f.at[i][axis]);
-    if (is_inside(g, at, tolerance)) return true;
+    if (is_trusted && (std::min(height[i], height[k]) >= -tolerance || std::max(height[i], height[k]) <= tolerance)) continue;
+    if (g.has(f.ids[i]) || g.has(f.ids[k]) || !goes_through(f.at[i], f.at[k], g)) continue;
+    const auto ends_on = [&](const Vector3& at) { return has_point(g, at, tolerance) || hangs_on(g, at, tolerance); };
+    if (!ends_on(f.at[i]) && !ends_on(f.at[k])) return true;
   }
   return false;
 }
@@ -148,7 +166,10 @@ struct OverlapTallies {
 };
 
 bool contains(const Box& box, const Vector3& at) {
-  return box.meets({at, at});
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (at[axis] < double{box.low[axis]} || at[axis] > double{box.high[axis]}) return false;
+  }
+  return true;
 }
 
 /// The boxes are wider than the faces by the tolerance.
@@ -187,13 +208,8 @@ bool lies_on_bounding_box(const Context& context, const Patch& patch) {
 }
 
 Box box_around(const Patch& patch, double margin) {
-  Box box{patch.at[0], patch.at[0]};
-  for (std::size_t i = 0; i < patch.n; ++i) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      box.low[axis] = std::min(box.low[axis], patch.at[i][axis] - margin);
-      box.high[axis] = std::max(box.high[axis], patch.at[i][axis] + margin);
-    }
-  }
+  Box box;
+  for (std::size_t i = 0; i < patch.n; ++i) box.add(patch.at[i], margin);
   return box;
 }
 
@@ -243,10 +259,10 @@ void report_overlaps(OverlapTallies& all, std::int64_t num_faces, CheckLog& log)
   log.found("boundary.overlap", FindingSeverity::error,
             fmt::format("{} pairs of boundary faces overlap: neighbours do not share whole faces", all.other.count()),
             all.other, PlaceKind::half_face);
-  log.found(
-      "boundary.crossing",
-      fmt::format("{} pairs of boundary faces cut through each other: the cells behind them overlap", all.crossing.count()),
-      all.crossing, PlaceKind::half_face);
+  log.found("boundary.crossing",
+            fmt::format("{} pairs of boundary faces cut through each other, or meet at edges without a common node",
+                        all.crossing.count()),
+            all.crossing, PlaceKind::half_face);
   log.found("boundary.not_searched", FindingSeverity::warning,
             fmt::format("{} of {} boundary faces were not compared with others: too many lie on top of each other",
                         all.not_searched.count(), num_faces),

@@ -141,12 +141,102 @@ void check_pair(const Context& context, const Expectation::Periodic& pair, Check
   }
 }
 
+/// Partner of every node of a link; what is wrong with the link itself goes to the log.
+std::unordered_map<std::int64_t, std::int64_t> partners_of(const Context& context, const mesh::PeriodicLink& link,
+                                                           CheckLog& log) {
+  std::unordered_map<std::int64_t, std::int64_t> partner_of, node_of;
+  Tally twice, moved;
+  std::int64_t num_absent = 0;
+  double farthest = 0;
+  const auto is_node = [&](std::int64_t id) { return id >= 0 && id < context.num_nodes(); };
+  for (const auto& [node, partner] : link.nodes) {
+    if (!is_node(node) || !is_node(partner)) {
+      ++num_absent;
+      continue;
+    }
+    const bool is_new = partner_of.try_emplace(node, partner).first->second == partner;
+    if (!is_new || node_of.try_emplace(partner, node).first->second != node) twice.add(node);
+    if (!link.from_partner) continue;
+    const auto& rows = *link.from_partner;
+    const Vector3 &from = context.mesh.nodes[static_cast<std::size_t>(partner)],
+                  &at = context.mesh.nodes[static_cast<std::size_t>(node)];
+    Vector3 to{};
+    for (std::size_t i = 0; i < 3; ++i) {
+      to[i] = rows[4 * i] * from[0] + rows[4 * i + 1] * from[1] + rows[4 * i + 2] * from[2] + rows[4 * i + 3];
+    }
+    const double off = length(at - to);
+    if (off <= context.tolerance) continue;
+    moved.add(node);
+    farthest = std::max(farthest, off);
+  }
+  if (num_absent > 0)
+    log.found("periodic.link", fmt::format("{}: {} pairs name a node that is not in the mesh", link.name, num_absent),
+              num_absent);
+  log.found("periodic.link", fmt::format("{}: {} nodes have two partners", link.name, twice.count()), twice, PlaceKind::node);
+  log.found("periodic.moved",
+            fmt::format("{}: {} of {} nodes are not where the file's transformation takes their partners, by up to {:.3g}",
+                        link.name, moved.count(), link.nodes.size(), farthest),
+            moved, PlaceKind::node);
+  return partner_of;
+}
+
+/// Faces as sorted corners, `renamed` by the caller; corners without a new name become -1.
+template <class Rename>
+std::vector<FaceKey> keys_of(std::span<const mesh::FaceBlock> blocks, Rename&& rename) {
+  std::vector<FaceKey> keys;
+  for (const mesh::FaceBlock& block : blocks) {
+    const auto n = static_cast<std::size_t>(corners_of(block.kind));
+    for (std::size_t i = 0; i + n <= block.corners.size(); i += n) {
+      std::array<std::int64_t, 4> ids{};
+      for (std::size_t k = 0; k < n; ++k) ids[k] = rename(block.corners[i + k]);
+      keys.push_back(sorted_key(std::span<const std::int64_t>(ids).first(n)));
+    }
+  }
+  return keys;
+}
+
+/// A link that the file holds: the partners are named, so faces are compared by ids.
+void check_link(const Context& context, const mesh::PeriodicLink& link, CheckLog& log) {
+  const auto partner_of = partners_of(context, link, log);
+  const auto own = keys_of(link.faces, [](std::int64_t id) { return id; });
+  const auto mapped = keys_of(link.faces, [&](std::int64_t id) {
+    const auto found = partner_of.find(id);
+    return found == partner_of.end() ? -1 : found->second;
+  });
+  auto partners = keys_of(link.partner_faces, [](std::int64_t id) { return id; });
+  std::sort(partners.begin(), partners.end());
+  log.examined(static_cast<std::int64_t>(link.nodes.size() + own.size() + partners.size()));
+  Tally lonely;
+  std::int64_t num_matched = 0;
+  for (std::size_t i = 0; i < mapped.size(); ++i) {
+    // Corners stand behind the -1 that fill a key up; a corner without a partner is one more of those.
+    const bool is_whole = std::ranges::count(mapped[i], -1) == std::ranges::count(own[i], -1);
+    // A side that the file holds no faces of can't be compared; that they are missing is face.untagged.
+    if (is_whole && (partners.empty() || std::binary_search(partners.begin(), partners.end(), mapped[i]))) {
+      ++num_matched;
+    } else {
+      lonely.add(own[i].back());
+    }
+  }
+  log.found("periodic.unmatched",
+            fmt::format("{}: {} of {} faces have no partner with the same corners", link.name, lonely.count(), own.size()),
+            lonely, PlaceKind::node);
+  const std::int64_t extra = static_cast<std::int64_t>(partners.size()) - num_matched;
+  if (lonely.count() == 0 && !own.empty() && extra > 0) {
+    log.found("periodic.unmatched", fmt::format("{}: {} faces of the other side have no partner", link.name, extra), extra);
+  }
+}
+
 }  // namespace
 
 void check_periodic(const Context& context, Report& report) {
-  if (context.expectation == nullptr || context.expectation->periodic.empty()) return;
+  const bool has_groups = context.expectation != nullptr && !context.expectation->periodic.empty();
+  if (!has_groups && context.mesh.periodic.empty()) return;
   CheckLog log(report, context, "periodic");
-  for (const auto& pair : context.expectation->periodic) check_pair(context, pair, log);
+  if (has_groups) {
+    for (const auto& pair : context.expectation->periodic) check_pair(context, pair, log);
+  }
+  for (const mesh::PeriodicLink& link : context.mesh.periodic) check_link(context, link, log);
 }
 
 }  // namespace pcbmesh::validation::checks

@@ -16,6 +16,12 @@ void judge(const checks::Context& context, const checks::FaceMatch&, Report& rep
   if (format.name == "msh" && format.is_binary) {
     log.found("profile.elmer.format", fmt::format("the file is binary MSH {}; ElmerGrid reads text only", format.version));
   }
+  // Elmer's own files hold prisms of 15 nodes; it is ElmerGrid that loses their upper faces.
+  const std::int64_t of_15 = format.name == "elmer" ? 0 : num_prisms_of_order_2(context, 9),
+                     of_18 = num_prisms_of_order_2(context, 12);
+  if (of_15 + of_18 == 0) return;
+  log.found("profile.elmer.second_order_prisms", fmt::format("{} prisms have 15 nodes and {} have 18", of_15, of_18),
+            of_15 + of_18);
 }
 
 }  // namespace

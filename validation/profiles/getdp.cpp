@@ -16,6 +16,9 @@ void judge(const checks::Context& context, const checks::FaceMatch&, Report& rep
     log.found("profile.getdp.format",
               fmt::format("the file is MSH {}; GetDP without Gmsh's library reads 2.2 only", context.mesh.format.version));
   }
+  if (const std::int64_t prisms = num_prisms_of_order_2(context, 9) + num_prisms_of_order_2(context, 12); prisms > 0) {
+    log.found("profile.getdp.second_order_prisms", fmt::format("{} prisms have 15 or 18 nodes", prisms), prisms);
+  }
   std::string shared;
   std::int64_t count = 0;
   for (int slot = 0; slot < context.cell_tags.size(); ++slot) {

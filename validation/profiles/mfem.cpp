@@ -19,6 +19,8 @@ void judge(const checks::Context& context, const checks::FaceMatch&, Report& rep
                           context.mesh.format.version));
   }
   report_untagged(context, "profile.mfem.untagged_elements", log);
+  report_incomplete(context, "profile.mfem.incomplete_elements", log);
+  report_mixed_orders(context, "profile.mfem.mixed_orders", log);
   report_sparse(context, "profile.mfem.sparse_attributes", log);
 }
 

@@ -25,6 +25,8 @@ void judge_file(const checks::Context& context, checks::CheckLog& log) {
                     context.mesh.format.version));
   }
   report_untagged(context, "profile.palace.untagged_elements", log);
+  report_incomplete(context, "profile.palace.incomplete_elements", log);
+  report_mixed_orders(context, "profile.palace.mixed_orders", log);
   report_sparse(context, "profile.palace.sparse_attributes", log);
   if (const std::int64_t pyramids = num_cells(context, mesh::CellKind::pyramid); pyramids > 0) {
     log.found("profile.palace.pyramids", fmt::format("{} cells are pyramids", pyramids), pyramids);

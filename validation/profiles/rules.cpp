@@ -65,6 +65,37 @@ bool is_msh4(const checks::Context& context) {
   return context.mesh.format.name == "msh" && context.mesh.format.version.starts_with('4');
 }
 
+std::int64_t num_prisms_of_order_2(const checks::Context& context, int num_mid) {
+  std::int64_t count = 0;
+  for (const mesh::CellBlock& block : context.mesh.cells) {
+    count += block.kind == mesh::CellKind::wedge && block.num_mid == num_mid ? block.size() : 0;
+  }
+  return count;
+}
+
+void report_incomplete(const checks::Context& context, std::string_view code, checks::CheckLog& log) {
+  if (context.mesh.format.name != "msh") return;
+  std::int64_t quadrangles = 0;
+  for (const mesh::FaceBlock& block : context.mesh.faces) {
+    quadrangles += block.kind == mesh::FaceKind::quadrangle && block.num_mid == 4 ? block.size() : 0;
+  }
+  const std::int64_t prisms = num_prisms_of_order_2(context, 9);
+  if (prisms + quadrangles == 0) return;
+  log.found(code, fmt::format("{} prisms have 15 nodes and {} quadrangles 8", prisms, quadrangles), prisms + quadrangles);
+}
+
+void report_mixed_orders(const checks::Context& context, std::string_view code, checks::CheckLog& log) {
+  if (context.mesh.format.name != "msh") return;
+  std::int64_t first = 0, second = 0;
+  const auto look = [&](const auto& blocks) {
+    for (const auto& block : blocks) (block.num_mid == 0 ? first : second) += block.size();
+  };
+  look(context.mesh.cells);
+  look(context.mesh.faces);
+  if (first == 0 || second == 0) return;
+  log.found(code, fmt::format("{} elements are of first and {} of second order", first, second), std::min(first, second));
+}
+
 void report_untagged(const checks::Context& context, std::string_view code, checks::CheckLog& log) {
   const auto& untagged = context.mesh.num_untagged;
   const std::int64_t count = untagged[0] + untagged[1] + untagged[2];

@@ -30,6 +30,13 @@ struct FaceGroup {
 /// The mesh is from an MSH file of version 4.
 [[nodiscard]] bool is_msh4(const checks::Context& context);
 
+/// Prisms with this many nodes of second order: 9 of 15 nodes, 12 of 18.
+[[nodiscard]] std::int64_t num_prisms_of_order_2(const checks::Context& context, int num_mid);
+/// MSH alone: elements whose faces or inside lack nodes (quadrangles of 8, prisms of 15), which MFEM's reader does not know.
+void report_incomplete(const checks::Context& context, std::string_view code, checks::CheckLog& log);
+/// MSH alone: elements of first and of second order in one file, which MFEM's reader refuses.
+void report_mixed_orders(const checks::Context& context, std::string_view code, checks::CheckLog& log);
+
 /// Some elements of the file have a group and others none: MFEM's reader gives up.
 void report_untagged(const checks::Context& context, std::string_view code, checks::CheckLog& log);
 /// Attributes are not 1, 2, ..., n: tables by attribute get holes.

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,15 @@ struct FileFormat {
   bool is_binary = false;  ///< else text
 };
 
+/// A surface that is another one moved, as a file says ($Periodic of MSH): every node has a partner, every face a partner face.
+struct PeriodicLink {
+  std::string name;                                ///< for people, e.g. "surface 17 of surface 25"
+  std::vector<std::array<std::int64_t, 2>> nodes;  ///< node, partner; -1 = a number the file gives to no node
+  std::vector<FaceBlock> faces, partner_faces;     ///< all in the file, of a group or not (tags 0); empty = none are there
+  std::optional<std::array<double, 12>>
+      from_partner{};  ///< affine map from partner to node: three rows of four; nullopt = not said
+};
+
 /// An explicit mesh read from any file, for check and convert. Coordinates as written: a file does not know its unit.
 struct MeshData {
   std::string source;  ///< file
@@ -62,6 +72,7 @@ struct MeshData {
   std::vector<std::int64_t> num_other_elements;  ///< points [0] and lines [1] met and ignored
   FileFormat format;
   std::array<std::int64_t, 3> num_untagged{};  ///< points, lines and faces of the file that belong to no group
+  std::vector<PeriodicLink> periodic{};
 };
 
 }  // namespace pcbmesh::mesh

@@ -56,7 +56,8 @@ bool fits_in_a_file(const std::string& code) {
 }
 
 Json judge(const Fault& fault, std::size_t number, const std::string& folder) {
-  Json out{{"fault", fault.name}, {"cells", Json::object()}};
+  Json out{{"fault", fault.name}, {"cells", Json::object()}, {"reasons", Json::array()}};
+  for (const Consequence& one : fault.consequences) out["reasons"].push_back({one.code, one.is_certain, one.why});
   for (const Cells cells : all_cells) {
     std::set<std::string> found_once, expected;
     bool is_found = true;
