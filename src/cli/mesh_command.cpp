@@ -60,7 +60,7 @@ pipeline::OutputOptions output_options(const Options& options, LengthUnit unit) 
 }
 
 int run(const Options& options) {
-  const study::Study study = study_from(*options.study);
+  const study::Study study = unchecked_study_from(*options.study);
   pipeline::OutputOptions output = output_options(options, study.unit);
   prepare_for_solver(study, options.board, output);
   pipeline::require_writable(output, options.board);
@@ -68,7 +68,8 @@ int run(const Options& options) {
   progress.at("read", 0);
   const formats::ReadBoardResult read = formats::read_board(options.board, options.from, progress);
   pipeline::MeshBoardResult result = mesh_or_draw(
-      read.board, study, options.outputs.empty() ? std::filesystem::path() : std::filesystem::path(options.outputs.front()),
+      read.board, study, options.study->file,
+      options.outputs.empty() ? std::filesystem::path() : std::filesystem::path(options.outputs.front()),
       progress);
   Diagnostics all = read.diagnostics;
   all.merge(result.diagnostics);

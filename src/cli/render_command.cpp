@@ -49,13 +49,13 @@ int run(const Options& options) {
     throw Error(ErrorCode::usage, fmt::format("-o '{}': a picture ends in .png or .svg", options.output));
   static_cast<void>(view::parse_camera(options.picture->view));
   static_cast<void>(view::parse_colour_mode(options.picture->colour));
-  const study::Study study = study_from(*options.study);
+  const study::Study study = unchecked_study_from(*options.study);
   const Progress progress = terminal_progress(options.quiet);
   progress.at("read", 0);
   std::optional<mesh::PrismMesh> mesh = read_if_mesh(options.board, progress);
   if (!mesh) {
     const formats::ReadBoardResult read = formats::read_board(options.board, options.from, progress);
-    mesh = mesh_or_draw(read.board, study, options.output, progress).mesh;
+    mesh = mesh_or_draw(read.board, study, options.study->file, options.output, progress).mesh;
   }
   progress.at("draw", 0);
   const std::string picture = draw(options, *mesh, ending);

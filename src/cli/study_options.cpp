@@ -110,8 +110,8 @@ std::shared_ptr<StudyOptions> add_study_options(CLI::App& command) {
   return o;
 }
 
-study::Study study_from(const StudyOptions& o) {
-  study::Study s = o.file.empty() ? study::Study{} : study::read_study(o.file);
+study::Study unchecked_study_from(const StudyOptions& o) {
+  study::Study s = o.file.empty() ? study::Study{} : study::read_unchecked_study(o.file);
   if (!o.nets.empty()) {
     s.region = study::RegionKind::nets;
     s.nets = split_at_commas(o.nets);
@@ -163,7 +163,17 @@ study::Study study_from(const StudyOptions& o) {
   if (o.max_prisms != 0) s.max_prisms = count("--max-prisms", o.max_prisms);
   take_fabrication_options(*o.fabrication, s.fabrication);
   take_physics_options(o, s);
-  study::check(s);
+  return s;
+}
+
+study::Study study_from(const StudyOptions& o) {
+  study::Study s = unchecked_study_from(o);
+  try {
+    study::check(s);
+  } catch (const Error& error) {
+    if (o.file.empty()) throw;
+    throw Error(error.code(), study::with_lines(error.text(), o.file), {.file = o.file});
+  }
   return s;
 }
 
