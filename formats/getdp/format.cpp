@@ -21,8 +21,8 @@ void require_expressible(const deck::FieldProblem& problem) {
       deck::refuse(me, fmt::format("wave port '{}'", port.port.name),
                    "a lumped port across the gap between trace and reference; Palace and Elmer have wave ports");
   for (const deck::Face& face : problem.faces) {
-    if (face.condition == BoundaryCondition::periodic)
-      deck::refuse(me, fmt::format("the periodic side '{}' in this deck", face.name), "pec, pmc or absorbing there");
+    if (face.condition == BoundaryCondition::periodic && problem.options.problem == Problem::electrostatic)
+      deck::refuse(me, fmt::format("the periodic side '{}' in electrostatics", face.name), "pmc there, a plane of symmetry");
     if (problem.options.problem == Problem::eigenmode &&
         (face.condition == BoundaryCondition::absorbing || face.condition == BoundaryCondition::impedance ||
          face.condition == BoundaryCondition::port))

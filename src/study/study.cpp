@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "pcbmesh/base/error.hpp"
-#include "pcbmesh/geometry/ring_contact.hpp"
 #include "src/study/choices.hpp"
 #include "src/study/faults.hpp"
 
@@ -17,6 +16,18 @@ namespace {
 /// Place of an exact point, as the program prints coordinates.
 std::string place_text(geometry::Point p) {
   return fmt::format("({:.6g}, {:.6g}) mm", static_cast<double>(p.x) * 1e-6, static_cast<double>(p.y) * 1e-6);
+}
+
+/// Where two segments cross in their interiors, rounded to the grid.
+std::optional<geometry::Point> crossing(geometry::Point a, geometry::Point b, geometry::Point c, geometry::Point d) {
+  const auto turn = [](geometry::Point p, geometry::Point q, geometry::Point r) { return geometry::orientation(p, q, r); };
+  if (turn(a, b, c) * turn(a, b, d) >= 0 || turn(c, d, a) * turn(c, d, b) >= 0) return std::nullopt;
+  const auto cross = [](geometry::Point o, geometry::Point p, geometry::Point q) {
+    return static_cast<double>(p.x - o.x) * static_cast<double>(q.y - o.y) -
+           static_cast<double>(p.y - o.y) * static_cast<double>(q.x - o.x);
+  };
+  const double t = cross(c, d, a) / (cross(c, d, a) - cross(c, d, b));
+  return geometry::Point{a.x + std::llround(t * static_cast<double>(b.x - a.x)), a.y + std::llround(t * static_cast<double>(b.y - a.y))};
 }
 
 void check_polygon(const Study& study, FaultList& faults) {
@@ -50,9 +61,14 @@ void check_polygon(const Study& study, FaultList& faults) {
       return;
     }
   }
-  if (const auto at = geometry::self_crossing(ring))
-    faults.add("/region/polygon", fmt::format("the polygon crosses itself near {}; order its corners along the outline",
-                                              place_text(*at)));
+  for (std::size_t i = 0; i < ring.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (const auto at = crossing(ring[i], ring[(i + 1) % ring.size()], ring[j], ring[j + 1])) {
+        faults.add("/region/polygon", fmt::format("the polygon crosses itself near {}, side {} over side {}; order its corners along "
+                                                  "the outline",
+                                                  place_text(*at), j + 1, i + 1));
+        return;
+      }
 }
 
 void check_region(const Study& study, FaultList& faults) {

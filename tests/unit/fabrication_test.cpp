@@ -310,8 +310,8 @@ TEST(Materials, StudiesChooseDefineAndDisperse) {
   EXPECT_EQ(plain.eps_r, 4);
   const board::Material taken = named(
       composed(board, R"("materials": {"use": [{"board": "PP", "take": "Megtron 6"}]}, "mesh": {"frequency": "10GHz"})"), "PP");
-  EXPECT_LT(taken.eps_r, 3.71);
-  EXPECT_GT(taken.eps_r, 3.69);
+  EXPECT_LT(taken.eps_r, 3.65) << "the value at 1 GHz";
+  EXPECT_GT(taken.eps_r, 3.63);
   EXPECT_EQ(taken.at_hz, 1e10);
   const board::Material stated = named(
       composed(board,
