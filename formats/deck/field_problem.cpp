@@ -35,9 +35,8 @@ std::vector<Volume> volumes_of(const mesh::PrismMesh& mesh) {
     const mesh::VolumeTag& tag = mesh.volume_tags()[i];
     if (tag.num_prisms == 0) continue;
     const board::Material& material = mesh.materials()[static_cast<std::size_t>(tag.material)];
-    volumes.push_back(
-        {tag.id, names[i], tag.net, material, tag.net >= 0 || material.sigma_s_per_m >= tags_json::conductor_sigma_s_per_m,
-         tag.stretched});
+    volumes.push_back({tag.id, names[i], tag.net, material,
+                       tag.net >= 0 || material.sigma_s_per_m >= tags_json::conductor_sigma_s_per_m, tag.stretched});
   }
   return volumes;
 }
@@ -241,8 +240,12 @@ std::array<double, 2> extent_of(const mesh::PlanarMesh& planar) {
 
 FieldProblem state(const mesh::PrismMesh& mesh, const DeckOptions& options, std::int32_t first_face_id,
                    Diagnostics& diagnostics) {
-  FieldProblem problem{
-      .options = options, .volumes = volumes_of(mesh), .faces = faces_of(mesh, first_face_id), .ports = {}, .conductors = {}, .floating = {}};
+  FieldProblem problem{.options = options,
+                       .volumes = volumes_of(mesh),
+                       .faces = faces_of(mesh, first_face_id),
+                       .ports = {},
+                       .conductors = {},
+                       .floating = {}};
   problem.shell = mesh.shell();
   problem.period_m = extent_of(mesh.planar());
   add_ports(mesh, first_face_id, problem);

@@ -68,8 +68,9 @@ std::string edge_space(const deck::FieldProblem& problem, std::string_view suppo
     const double unit_m = metres_per(problem.options.unit);
     const bool in_x = face.name.starts_with('x');
     const std::string back = number(problem.period_m[in_x ? 0 : 1] / unit_m);
-    links += fmt::format("    {{ Region Sur_{}; Type Link; RegionRef Sur_{}; Coefficient 1.; Function Vector[X[]{}, Y[]{}, Z[]]; }}\n",
-                         face.id, face.partner, in_x ? "-" + back : "", in_x ? "" : "-" + back);
+    links += fmt::format(
+        "    {{ Region Sur_{}; Type Link; RegionRef Sur_{}; Coefficient 1.; Function Vector[X[]{}, Y[]{}, Z[]]; }}\n", face.id,
+        face.partner, in_x ? "-" + back : "", in_x ? "" : "-" + back);
   }
   return fmt::format(R"(Constraint {{
   {{ Name Con_Metal; Case {{

@@ -69,8 +69,7 @@ int run(const Options& options) {
   const formats::ReadBoardResult read = formats::read_board(options.board, options.from, progress);
   pipeline::MeshBoardResult result = mesh_or_draw(
       read.board, study, options.study->file,
-      options.outputs.empty() ? std::filesystem::path() : std::filesystem::path(options.outputs.front()),
-      progress);
+      options.outputs.empty() ? std::filesystem::path() : std::filesystem::path(options.outputs.front()), progress);
   Diagnostics all = read.diagnostics;
   all.merge(result.diagnostics);
   result.diagnostics = std::move(all);

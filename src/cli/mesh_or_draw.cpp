@@ -16,9 +16,8 @@ pipeline::MeshBoardResult mesh_or_draw(const board::Board& board, const study::S
   try {
     return pipeline::mesh_board(board, study, progress);
   } catch (const Error& told) {
-    const Error error = study_file.empty()
-                            ? told
-                            : Error(told.code(), study::with_lines(told.text(), study_file), told.spot(), told.ids());
+    const Error error =
+        study_file.empty() ? told : Error(told.code(), study::with_lines(told.text(), study_file), told.spot(), told.ids());
     if (!error.spot().at_mm || output.empty()) throw error;
     const std::filesystem::path picture = pipeline::file_beside(output, ".refusal.svg");
     try {

@@ -55,7 +55,7 @@ struct ResolvedNames {
   std::vector<std::int32_t> nets;
   std::vector<ResolvedRule> rules;
   HolePlan holes;
-  std::vector<ResolvedFill> fills;  ///< per copper layer
+  std::vector<ResolvedFill> fills;   ///< per copper layer
   std::vector<study::Fault> faults;  ///< what was not found; names that are wrong
   bool must_stop = false;            ///< they concern the region or how the board is made: no port can be placed
 };
@@ -197,7 +197,8 @@ ResolvedNames resolve_names(const Board& board, const Study& study, MaterialTabl
   if (!materials.unknown().empty()) names.faults.push_back({"/materials/use", materials.unknown()});
   if (unknown == known_so_far) check_backdrills(board, study, names.holes, names.faults);
   // Where only terminals of ports are unknown, the other ports can be looked at.
-  names.must_stop = unknown != known_so_far || !materials.unknown().empty() || std::ranges::count(names.nets, board::no_net) > 0;
+  names.must_stop =
+      unknown != known_so_far || !materials.unknown().empty() || std::ranges::count(names.nets, board::no_net) > 0;
   return names;
 }
 

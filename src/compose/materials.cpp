@@ -78,11 +78,12 @@ std::vector<study::Fault> MaterialTable::layers_without_permittivity(const board
     if (layer.kind == board::LayerKind::copper || layer.kind == board::LayerKind::solder_mask || layer.material < 0) continue;
     const Material& m = materials_[static_cast<std::size_t>(layer.material)];
     if (!m.is_assumed) continue;
-    faults.push_back({"/materials/use",
-                      fmt::format("layer '{0}' has no permittivity: the board does not state that of its material '{1}', nor does "
-                                  "the library know it, and a field solver can't guess; state it in the stackup, or name a "
-                                  "material: \"materials\": {{\"use\": [{{\"board\": \"{1}\", \"take\": \"FR-4\"}}]}}",
-                                  layer.name, m.name)});
+    faults.push_back(
+        {"/materials/use",
+         fmt::format("layer '{0}' has no permittivity: the board does not state that of its material '{1}', nor does "
+                     "the library know it, and a field solver can't guess; state it in the stackup, or name a "
+                     "material: \"materials\": {{\"use\": [{{\"board\": \"{1}\", \"take\": \"FR-4\"}}]}}",
+                     layer.name, m.name)});
   }
   return faults;
 }

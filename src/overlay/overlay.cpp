@@ -127,8 +127,7 @@ Spot locate(const Mismatch& mismatch, const Sheets& sheets, const Cleaned& clean
   return spot;
 }
 
-mesh::PlanarGraph to_planar_graph(const EdgeGraph& graph, const LabelPool& labels, const model::Model& model,
-                                  Nm tolerance_nm) {
+mesh::PlanarGraph to_planar_graph(const EdgeGraph& graph, const LabelPool& labels, const model::Model& model, Nm tolerance_nm) {
   mesh::PlanarGraphParts parts;
   parts.vertices = graph.points;
   match_sides(parts.vertices, model, tolerance_nm);

@@ -86,10 +86,10 @@ class Membership {
     const bool on_board = in_domain && present_.size() > 1 && present_[1] == board_body;
     increments_.clear();
     for (const std::int32_t body : present_) {
-      const bool kept = body == domain_body   ? has_domain_
-                        : body == board_body  ? has_domain_ && in_domain
+      const bool kept = body == domain_body    ? has_domain_
+                        : body == board_body   ? has_domain_ && in_domain
                         : body >= first_guide_ ? in_domain
-                                              : on_board;
+                                               : on_board;
       if (kept) increments_.push_back({body, 1});
     }
     return memo_[ix(state)] = labels_.intern(increments_);
@@ -287,7 +287,8 @@ Sheets make_sheets(const model::Model& model, LabelPool& labels, const Conductor
   std::map<std::tuple<std::int32_t, std::int32_t, std::int32_t, bool>, std::vector<std::int32_t>> groups;
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
     const model::Body& body = model.bodies()[b];
-    groups[{body.first_slab, body.last_slab, body.sheet ? body.sheet->face : -1, static_cast<std::int32_t>(b) >= model.first_guide_body()}]
+    groups[{body.first_slab, body.last_slab, body.sheet ? body.sheet->face : -1,
+            static_cast<std::int32_t>(b) >= model.first_guide_body()}]
         .push_back(static_cast<std::int32_t>(b));
   }
   made.exact.components.assign(model.bodies().size(), 0);

@@ -22,10 +22,8 @@ struct Choice {
   std::string_view name;
 };
 
-inline constexpr std::array<Choice<RegionKind>, 4> region_names{{{RegionKind::whole, "whole"},
-                                                                 {RegionKind::nets, "nets"},
-                                                                 {RegionKind::box, "box"},
-                                                                 {RegionKind::polygon, "polygon"}}};
+inline constexpr std::array<Choice<RegionKind>, 4> region_names{
+    {{RegionKind::whole, "whole"}, {RegionKind::nets, "nets"}, {RegionKind::box, "box"}, {RegionKind::polygon, "polygon"}}};
 inline constexpr std::array<Choice<ConductorMode>, 3> conductor_names{
     {{ConductorMode::solid, "solid"}, {ConductorMode::hollow, "hollow"}, {ConductorMode::sheet, "sheet"}}};
 inline constexpr std::array<Choice<ConductorSurface>, 2> surface_names{

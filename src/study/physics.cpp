@@ -94,8 +94,7 @@ void check_periodic(const Study& study, HullSide side, const std::string& field,
   }
   if (study.boundaries[static_cast<std::size_t>(opposite(side))].kind != BoundaryKind::periodic)
     faults.add(field, fmt::format("a periodic side needs its partner: make {} periodic too", name_of(opposite(side))));
-  if (study.paper_compat)
-    faults.add(field, "the paper knows no periodic sides; leave paper_compat out");
+  if (study.paper_compat) faults.add(field, "the paper knows no periodic sides; leave paper_compat out");
 }
 
 void check_matched_layers(const Study& study, HullSide side, const std::string& field, FaultList& faults) {
@@ -107,7 +106,8 @@ void check_matched_layers(const Study& study, HullSide side, const std::string& 
     faults.add(field + "/order", fmt::format("{} is out of range; expected 1 to 4", boundary.order));
   for (const Boundary& other : study.boundaries)
     if (other.kind == BoundaryKind::pml && other.order != boundary.order) {
-      faults.add(field + "/order", fmt::format("{} here and {} on another side; take one order for all", boundary.order, other.order));
+      faults.add(field + "/order",
+                 fmt::format("{} here and {} on another side; take one order for all", boundary.order, other.order));
       break;
     }
   if (boundary.backing != BoundaryKind::pec && boundary.backing != BoundaryKind::pmc &&
@@ -118,8 +118,8 @@ void check_matched_layers(const Study& study, HullSide side, const std::string& 
     faults.add(field, "walls of cut-outs and polygons can't have matched layers; take absorbing there");
   if (study.region == RegionKind::polygon && side <= HullSide::ymax)
     faults.add(field, "a polygonal region has matched layers above and below only; take a box, or absorbing sides");
-  for (const auto& [z_side, air, name] : {std::tuple{HullSide::zmin, study.air_below, "below"},
-                                          std::tuple{HullSide::zmax, study.air_above, "above"}})
+  for (const auto& [z_side, air, name] :
+       {std::tuple{HullSide::zmin, study.air_below, "below"}, std::tuple{HullSide::zmax, study.air_above, "above"}})
     if (side == z_side && air == 0)
       faults.add(field, fmt::format("matched layers lie outside the air, and there is none; give some in /air/{}", name));
   if (study.region == RegionKind::whole && side <= HullSide::ymax && study.air_around == 0)
@@ -182,14 +182,16 @@ void check_deck_boundaries(const Study& study, FaultList& faults) {
     if (kind != BoundaryKind::pml && kind != BoundaryKind::periodic) continue;
     // GetDP's deck stretches coordinates at a frequency and links edges; the other decks have neither.
     const bool is_getdp = study.solver == Solver::getdp;
-    if (is_getdp && (study.problem == Problem::driven ||
-                     (study.problem == Problem::eigenmode && kind == BoundaryKind::periodic)))
+    if (is_getdp &&
+        (study.problem == Problem::driven || (study.problem == Problem::eigenmode && kind == BoundaryKind::periodic)))
       continue;
-    faults.add(fmt::format("/boundaries/{}", name_of(static_cast<HullSide>(i))),
-               fmt::format("the deck of {} has no {} in a {} problem; the nearest it can do is {}. Without a solver the mesh is "
-                           "written with all its tags",
-                           name_of(study.solver), kind == BoundaryKind::pml ? "perfectly matched layers" : "periodic sides",
-                           name_of(study.problem), kind == BoundaryKind::pml ? "absorbing" : "pec or pmc on both sides, which are symmetry planes"));
+    faults.add(
+        fmt::format("/boundaries/{}", name_of(static_cast<HullSide>(i))),
+        fmt::format("the deck of {} has no {} in a {} problem; the nearest it can do is {}. Without a solver the mesh is "
+                    "written with all its tags",
+                    name_of(study.solver), kind == BoundaryKind::pml ? "perfectly matched layers" : "periodic sides",
+                    name_of(study.problem),
+                    kind == BoundaryKind::pml ? "absorbing" : "pec or pmc on both sides, which are symmetry planes"));
   }
 }
 

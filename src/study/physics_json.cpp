@@ -60,8 +60,7 @@ Boundary read_boundary(const JsonValue& field) {
   if (!is_pml) return boundary;
   boundary.thickness = field.at("thickness").as_length(study_unit_mm);
   const auto count = [&](std::string_view name, int& into) {
-    if (const auto number = field.find(name))
-      into = static_cast<int>(std::clamp<std::int64_t>(number->as_integer(), -1, 1000));
+    if (const auto number = field.find(name)) into = static_cast<int>(std::clamp<std::int64_t>(number->as_integer(), -1, 1000));
   };
   count("layers", boundary.layers);
   count("order", boundary.order);

@@ -27,7 +27,8 @@ std::optional<geometry::Point> crossing(geometry::Point a, geometry::Point b, ge
            static_cast<double>(p.y - o.y) * static_cast<double>(q.x - o.x);
   };
   const double t = cross(c, d, a) / (cross(c, d, a) - cross(c, d, b));
-  return geometry::Point{a.x + std::llround(t * static_cast<double>(b.x - a.x)), a.y + std::llround(t * static_cast<double>(b.y - a.y))};
+  return geometry::Point{a.x + std::llround(t * static_cast<double>(b.x - a.x)),
+                         a.y + std::llround(t * static_cast<double>(b.y - a.y))};
 }
 
 void check_polygon(const Study& study, FaultList& faults) {
@@ -44,7 +45,8 @@ void check_polygon(const Study& study, FaultList& faults) {
     for (const Nm value : {ring[i].x, ring[i].y}) faults.require_length(field, value, -max_coordinate_nm, max_coordinate_nm);
     for (std::size_t j = 0; j < i; ++j)
       if (ring[j] == ring[i]) {
-        faults.add(field, fmt::format("corner {} lies at {} as corner {} does; leave one out", i + 1, place_text(ring[i]), j + 1));
+        faults.add(field,
+                   fmt::format("corner {} lies at {} as corner {} does; leave one out", i + 1, place_text(ring[i]), j + 1));
         return;
       }
   }
@@ -64,9 +66,10 @@ void check_polygon(const Study& study, FaultList& faults) {
   for (std::size_t i = 0; i < ring.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (const auto at = crossing(ring[i], ring[(i + 1) % ring.size()], ring[j], ring[j + 1])) {
-        faults.add("/region/polygon", fmt::format("the polygon crosses itself near {}, side {} over side {}; order its corners along "
-                                                  "the outline",
-                                                  place_text(*at), j + 1, i + 1));
+        faults.add("/region/polygon",
+                   fmt::format("the polygon crosses itself near {}, side {} over side {}; order its corners along "
+                               "the outline",
+                               place_text(*at), j + 1, i + 1));
         return;
       }
 }
@@ -201,16 +204,17 @@ ConductorMode parse_conductor_mode(std::string_view text) {
 bool Study::operator==(const Study& other) const {
   const auto same_box = [](const geometry::Box& a, const geometry::Box& b) { return a.min == b.min && a.max == b.max; };
   return region == other.region && nets == other.nets && margin == other.margin && box.has_value() == other.box.has_value() &&
-         (!box || same_box(*box, *other.box)) && polygon == other.polygon && conductors == other.conductors && conductor_rules == other.conductor_rules &&
-         air_above == other.air_above && air_below == other.air_below && air_around == other.air_around &&
-         frequency_hz == other.frequency_hz && longest_edge == other.longest_edge && min_angle_deg == other.min_angle_deg &&
-         edge_at_copper == other.edge_at_copper && growth == other.growth && seed == other.seed && smooth == other.smooth &&
-         policy == other.policy && sublayers == other.sublayers && height_bounds == other.height_bounds &&
-         match == other.match && paper_compat == other.paper_compat && tolerance == other.tolerance &&
-         arcs.sagitta_nm == other.arcs.sagitta_nm && arcs.mode == other.arcs.mode && unit == other.unit &&
-         split == other.split && order == other.order && wedge_nodes == other.wedge_nodes && max_prisms == other.max_prisms &&
-         conductor_surface == other.conductor_surface && problem == other.problem && solver == other.solver &&
-         ports == other.ports && boundaries == other.boundaries && polygon_boundaries == other.polygon_boundaries && sweep == other.sweep && modes == other.modes &&
+         (!box || same_box(*box, *other.box)) && polygon == other.polygon && conductors == other.conductors &&
+         conductor_rules == other.conductor_rules && air_above == other.air_above && air_below == other.air_below &&
+         air_around == other.air_around && frequency_hz == other.frequency_hz && longest_edge == other.longest_edge &&
+         min_angle_deg == other.min_angle_deg && edge_at_copper == other.edge_at_copper && growth == other.growth &&
+         seed == other.seed && smooth == other.smooth && policy == other.policy && sublayers == other.sublayers &&
+         height_bounds == other.height_bounds && match == other.match && paper_compat == other.paper_compat &&
+         tolerance == other.tolerance && arcs.sagitta_nm == other.arcs.sagitta_nm && arcs.mode == other.arcs.mode &&
+         unit == other.unit && split == other.split && order == other.order && wedge_nodes == other.wedge_nodes &&
+         max_prisms == other.max_prisms && conductor_surface == other.conductor_surface && problem == other.problem &&
+         solver == other.solver && ports == other.ports && boundaries == other.boundaries &&
+         polygon_boundaries == other.polygon_boundaries && sweep == other.sweep && modes == other.modes &&
          fabrication == other.fabrication;
 }
 

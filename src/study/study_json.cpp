@@ -29,7 +29,8 @@ void read_region(const JsonValue& object, Study& study) {
   if (const auto polygon = object.find_set("polygon"))
     for (const JsonValue point : polygon->as_array()) study.polygon.push_back(read_corner(point));
   read_length(object, "margin", study.margin);
-  // Without a kind, what is given tells: a box or polygon bounds the domain, and nets named beside it are the nets of interest in it.
+  // Without a kind, what is given tells: a box or polygon bounds the domain, and nets named beside it are the nets of interest
+  // in it.
   if (!object.find("kind")) {
     if (!study.nets.empty()) study.region = RegionKind::nets;
     if (study.box) study.region = RegionKind::box;
@@ -242,8 +243,7 @@ std::string with_lines(std::string_view faults, const std::filesystem::path& fil
     faults.remove_prefix(std::min(faults.size(), one.size() + 1));
     const std::size_t start = one.find_first_not_of(' '), colon = one.find(':');
     if (start != std::string_view::npos && one[start] == '/' && colon != std::string_view::npos)
-      out += fmt::format("{} ({}:{}){}", one.substr(0, colon), file.filename().string(),
-                         spot_of(document.root(), one.substr(start)).line, one.substr(colon));
+      out += fmt::format("{} ({}:{})", one, file.filename().string(), spot_of(document.root(), one.substr(start)).line);
     else
       out += one;
     if (!faults.empty()) out += '\n';

@@ -86,10 +86,11 @@ std::int64_t PeriodicSides::mirror(Cdt& cdt, const GraphEdgeIndex& graph_edges) 
         if (added == Vertex()) {
           Spot spot;
           spot.at_mm = {place.x() * unit_nm_ * 1e-6, place.y() * unit_nm_ * 1e-6};
-          throw Error(ErrorCode::triangulation_limit,
-                      fmt::format("the triangles of periodic sides {} and {} can't be made alike here; use a larger --tolerance",
-                                  name_of(axis, false), name_of(axis, true)),
-                      spot);
+          throw Error(
+              ErrorCode::triangulation_limit,
+              fmt::format("the triangles of periodic sides {} and {} can't be made alike here; use a larger --tolerance",
+                          name_of(axis, false), name_of(axis, true)),
+              spot);
         }
         added->set_graph_edge(edge);
         before = added;
@@ -122,7 +123,8 @@ void PeriodicSides::require_same(const Cdt& cdt, const Regions& regions, const m
     const std::vector<Vertex> low = side(cdt, axis, false), high = side(cdt, axis, true);
     PCBMESH_ASSERT(low.size() == high.size());
     for (std::size_t i = 0; i + 1 < low.size(); ++i) {
-      const auto here = bodies_inside(cdt, regions, low[i], low[i + 1]), there = bodies_inside(cdt, regions, high[i], high[i + 1]);
+      const auto here = bodies_inside(cdt, regions, low[i], low[i + 1]),
+                 there = bodies_inside(cdt, regions, high[i], high[i + 1]);
       if (here == there) continue;
       const auto refuse = [&](const std::string& layer, const std::string& one, const std::string& other) {
         Spot spot{.layer = layer};

@@ -58,13 +58,15 @@ TEST(PeriodicSides, T6_BothSidesHaveTheSameVerticesInTheSameOrder) {
        {"", R"(, "mesh": {"seed": "hex", "smooth": true})", R"(, "mesh": {"edge_at_copper": 0.1, "longest_edge": 1})",
         R"(, "mesh": {"longest_edge": 0.4, "height_policy": "none"}, "conductors": {"mode": "sheet"})"}) {
     const study::Study study = parsed(R"("region": {"box": {"min": [15, 4], "max": [25, 14]}},
-      "boundaries": {"xmin": "periodic", "xmax": "periodic"})" + std::string(more));
+      "boundaries": {"xmin": "periodic", "xmax": "periodic"})" +
+                                      std::string(more));
     const mesh::PlanarMesh planar = pipeline::mesh_board(make_board(), study).mesh.planar();
     const auto low = on_side(planar, 0, 15e6 * metres_per_nm), high = on_side(planar, 0, 25e6 * metres_per_nm);
     ASSERT_GT(low.size(), 8U) << more;
     ASSERT_EQ(low.size(), high.size()) << more;
     for (std::size_t i = 0; i < low.size(); ++i) {
-      EXPECT_EQ(planar.points_m()[static_cast<std::size_t>(low[i])][1], planar.points_m()[static_cast<std::size_t>(high[i])][1]);
+      EXPECT_EQ(planar.points_m()[static_cast<std::size_t>(low[i])][1],
+                planar.points_m()[static_cast<std::size_t>(high[i])][1]);
       if (i > 0) {
         EXPECT_EQ(low[i - 1] < low[i], high[i - 1] < high[i]) << more;
       }
@@ -126,7 +128,8 @@ TEST(MatchedLayers, CopperInThemIsThatOfTheInnerFace) {
 }
 
 TEST(Polygon, WhatLiesOutsideIsNotMeshedAndSidesHaveNumbers) {
-  const std::string region = R"("region": {"polygon": [[15, 4], [25, 4], [20, 14]]}, "boundaries": {"side_2": "pmc", "side": "pec"})";
+  const std::string region =
+      R"("region": {"polygon": [[15, 4], [25, 4], [20, 14]]}, "boundaries": {"side_2": "pmc", "side": "pec"})";
   const mesh::PrismMesh m = pipeline::mesh_board(make_board(), parsed(region)).mesh;
   std::map<std::string, mesh::BoundaryCondition> sides;
   for (const mesh::FaceTag& tag : m.face_tags()) sides[tag.name] = tag.condition;

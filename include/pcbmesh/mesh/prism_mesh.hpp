@@ -18,11 +18,11 @@ namespace pcbmesh::mesh {
 
 /// One volume group: all prisms of one (layer, material, net), and of one set of stretched axes.
 struct VolumeTag {
-  std::int32_t id = 0;        ///< 1-based, dense
-  std::string name;           ///< "layer|material|net", net "none" where there is none; "...|pml xy" where x and y are stretched
-  std::int32_t layer = 0;     ///< index into layers
-  std::int32_t material = 0;  ///< index into materials
-  std::int32_t net = -1;      ///< index into nets, or -1
+  std::int32_t id = 0;     ///< 1-based, dense
+  std::string name;        ///< "layer|material|net", net "none" where there is none; "...|pml xy" where x and y are stretched
+  std::int32_t layer = 0;  ///< index into layers
+  std::int32_t material = 0;   ///< index into materials
+  std::int32_t net = -1;       ///< index into nets, or -1
   std::uint8_t stretched = 0;  ///< axes of a perfectly matched layer: 1 x, 2 y, 4 z; 0 = none
   std::int64_t num_prisms = 0;
   double volume_m3 = 0;

@@ -78,10 +78,10 @@ enum class BoundaryKind {
 /// What holds on one side of the domain.
 struct Boundary {
   BoundaryKind kind = BoundaryKind::automatic;
-  double ohms = 0;    ///< kind impedance
-  Nm thickness = 0;   ///< kind pml: of all its layers
-  int layers = 3;     ///< kind pml: elements across, at least
-  int order = 2;      ///< kind pml: power of the depth by which the stretch grows; one for all sides
+  double ohms = 0;                           ///< kind impedance
+  Nm thickness = 0;                          ///< kind pml: of all its layers
+  int layers = 3;                            ///< kind pml: elements across, at least
+  int order = 2;                             ///< kind pml: power of the depth by which the stretch grows; one for all sides
   BoundaryKind backing = BoundaryKind::pec;  ///< kind pml: on the outer faces; pec, pmc, absorbing or none
   bool operator==(const Boundary&) const = default;
 };

@@ -102,8 +102,8 @@ struct Study {
   static constexpr int schema_version = 1;
 
   RegionKind region = RegionKind::whole;
-  std::vector<std::string> nets;     ///< region nets: at least one
-  Nm margin = 2 * nm_per_mm;         ///< region nets: growth of the bounding box
+  std::vector<std::string> nets;         ///< region nets: at least one
+  Nm margin = 2 * nm_per_mm;             ///< region nets: growth of the bounding box
   std::optional<geometry::Box> box;      ///< region box
   std::vector<geometry::Point> polygon;  ///< region polygon: corners of a simple ring; side k runs from corner k to the next
 
@@ -179,7 +179,7 @@ struct Study {
 
 /// Reads a study whose ranges and combinations are looked at later, together with a board: faults_of() is not asked.
 [[nodiscard]] Study read_unchecked_study(const std::filesystem::path& file);
-/// Faults, one a line as text_of() has them, each with its line in the study file behind the field.
+/// Faults, one a line as text_of() has them, each with its line in the study file behind it.
 [[nodiscard]] std::string with_lines(std::string_view faults, const std::filesystem::path& file);
 
 /// The study as JSON, every default filled in; parse_study(to_json(s)) == s.
