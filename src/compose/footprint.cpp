@@ -254,17 +254,18 @@ bool meets(const Ring& ring, const Ring& polygon) {
 }  // namespace
 
 Ring Footprint::cut(Ring ring) const {
-  // Cut exactly where layers begin, else with some slack.
   const Box far = outer.grown(clip_slack_nm);
-  const auto limit = [](Nm inner, Nm outer_one, Nm slack) { return inner == outer_one ? slack : inner; };
-  const Box clip{{limit(box.min.x, outer.min.x, far.min.x), limit(box.min.y, outer.min.y, far.min.y)},
-                 {limit(box.max.x, outer.max.x, far.max.x), limit(box.max.y, outer.max.y, far.max.y)}};
+  Box clip = far;
+  if (goes_on[0]) clip.min.x = box.min.x;
+  if (goes_on[1]) clip.max.x = box.max.x;
+  if (goes_on[2]) clip.min.y = box.min.y;
+  if (goes_on[3]) clip.max.y = box.max.y;
   ring = clipped(std::move(ring), clip);
   // First along x, then along y, so that corners are filled.
-  if (!ring.empty() && clip.min.x != far.min.x) ring = swept(ring, &Point::x, clip.min.x, far.min.x);
-  if (!ring.empty() && clip.max.x != far.max.x) ring = swept(ring, &Point::x, clip.max.x, far.max.x);
-  if (!ring.empty() && clip.min.y != far.min.y) ring = swept(ring, &Point::y, clip.min.y, far.min.y);
-  if (!ring.empty() && clip.max.y != far.max.y) ring = swept(ring, &Point::y, clip.max.y, far.max.y);
+  if (!ring.empty() && goes_on[0]) ring = swept(ring, &Point::x, box.min.x, far.min.x);
+  if (!ring.empty() && goes_on[1]) ring = swept(ring, &Point::x, box.max.x, far.max.x);
+  if (!ring.empty() && goes_on[2]) ring = swept(ring, &Point::y, box.min.y, far.min.y);
+  if (!ring.empty() && goes_on[3]) ring = swept(ring, &Point::y, box.max.y, far.max.y);
   return ring;
 }
 
@@ -285,6 +286,9 @@ Footprint build_footprint(const Board& board, const Study& study, std::span<cons
 
   footprint.box = study.region == RegionKind::whole ? around : region_box(board, study, nets, around, diagnostics);
   footprint.outer = outer_box(footprint.box, study);
+  for (std::size_t side = 0; side < footprint.goes_on.size(); ++side)
+    footprint.goes_on[side] =
+        study.boundaries[side].kind == study::BoundaryKind::pml || study.boundaries[side].kind == study::BoundaryKind::periodic;
   const Box limit{{-max_coordinate_nm, -max_coordinate_nm}, {max_coordinate_nm, max_coordinate_nm}};
   if (!limit.contains(footprint.outer.min) || !limit.contains(footprint.outer.max))
     throw Error(ErrorCode::study_invalid,

@@ -23,14 +23,19 @@ std::vector<std::size_t> on_side(const std::vector<Point>& vertices, const geome
 
 }  // namespace
 
-void match_sides(std::vector<Point>& vertices, const model::Model& model, Nm tolerance_nm) {
-  const auto is_periodic = [&](std::size_t side) { return model.sides()[side].kind == model::SideKind::periodic; };
-  geometry::Box box;
+PeriodicSides::PeriodicSides(const model::Model& model)
+    : in_x_(model.sides()[0].kind == model::SideKind::periodic), in_y_(model.sides()[2].kind == model::SideKind::periodic) {
+  if (is_empty()) return;
   for (const model::BodyShape& shape : model.shapes())
     if (shape.body == 0)
-      for (const geometry::Ring& ring : shape.rings) box.add(geometry::bounds(ring));
+      for (const geometry::Ring& ring : shape.rings) box_.add(geometry::bounds(ring));
+}
+
+void match_sides(std::vector<Point>& vertices, const model::Model& model, Nm tolerance_nm) {
+  const PeriodicSides sides(model);
+  const geometry::Box& box = sides.box();
   for (const bool in_x : {true, false}) {
-    if (!is_periodic(in_x ? 0 : 2)) continue;
+    if (!(in_x ? sides.in_x() : sides.in_y())) continue;
     Nm Point::*const across = in_x ? &Point::x : &Point::y;
     Nm Point::*const along = in_x ? &Point::y : &Point::x;
     const auto low = on_side(vertices, box, across, along, box.min.*across);

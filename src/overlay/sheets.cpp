@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "src/overlay/collapse.hpp"
+#include "src/overlay/match_sides.hpp"
 #include "src/overlay/noding.hpp"
 
 namespace pcbmesh::overlay {
@@ -197,6 +198,9 @@ SheetCensus make_sheet(const model::Model& model, const std::vector<std::vector<
   made.census = take_census(graph, faces, labels, conductors);
   const bool are_guides = bodies.front() >= model.first_guide_body();  // their corners stay where they are
   std::vector<std::uint8_t> marks(graph.points.size(), 0);
+  const PeriodicSides periodic(model);  // what crosses them does so at the same places
+  for (std::size_t v = 0; v < graph.points.size(); ++v)
+    if (periodic.hold(graph.points[v])) marks[v] = fixed_point;
   std::size_t kept = 0;
   for (std::size_t e = 0; e < graph.edges.size(); ++e) {
     Edge edge = graph.edges[e];

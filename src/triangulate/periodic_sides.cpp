@@ -15,6 +15,9 @@ namespace {
 
 using Vertex = Cdt::Vertex_handle;
 
+// Vertices of the graph lie on the nanometre grid; what is nearer than half of it is one place.
+constexpr double nearly_nm = 0.5;
+
 double coordinate(Vertex v, int axis) {
   return axis == 0 ? v->point().x() : v->point().y();
 }
@@ -76,9 +79,15 @@ std::int64_t PeriodicSides::mirror(Cdt& cdt, const GraphEdgeIndex& graph_edges) 
       std::size_t next = 0;
       for (const Vertex v : from) {
         const double along = coordinate(v, 1 - axis);
-        while (next < to.size() && coordinate(to[next], 1 - axis) <= along) before = to[next++];
+        while (next < to.size() && coordinate(to[next], 1 - axis) <= along + nearly_nm / unit_nm_) before = to[next++];
         PCBMESH_ASSERT(before != Vertex());
-        if (coordinate(before, 1 - axis) == along) continue;
+        if (along - coordinate(before, 1 - axis) < nearly_nm / unit_nm_) {
+          // Split in two ways at one place, but for rounding: a vertex of the graph stays where it is.
+          const Vertex kept = before->is_graph_vertex() ? before : v, moved = before->is_graph_vertex() ? v : before;
+          const double across = coordinate(moved, axis), place = coordinate(kept, 1 - axis);
+          moved->set_point(axis == 0 ? Kernel::Point_2(across, place) : Kernel::Point_2(place, across));
+          continue;
+        }
         PCBMESH_ASSERT(next < to.size());
         const Kernel::Point_2 place = axis == 0 ? Kernel::Point_2(at, along) : Kernel::Point_2(along, at);
         const std::int32_t edge = graph_edge_of(graph_edges, before, to[next]);

@@ -7,7 +7,7 @@ import pathlib
 import sys
 import tempfile
 
-from program import ROOT, SKIPPED, run
+from program import DATA, ROOT, SKIPPED, run
 
 try:
     import gmsh
@@ -227,10 +227,26 @@ def all_faults_in_one_run(folder):
     expect(board["materials"], "the example has materials")
 
 
+def real_board(folder):
+    """A routed pair: a piece of it as the cell of an endless line, a shell round a part, a polygon."""
+    board = DATA / "kicad/04_antmicro_si_test_4L_v6.kicad_pcb"
+    if not board.is_file():
+        print(f"not looked at: {board} is absent")
+        return
+    hollow = {"conductors": {"mode": "hollow"}, "mesh": {"height_policy": "none"}}
+    for name, region, boundaries in (("pair", {"box": {"min": [104.3, -111.9], "max": [109.1, -109.6]}}, {"xmin": "periodic", "xmax": "periodic"}),
+                                     ("part", {"box": {"min": [100, -120], "max": [115, -105]}}, {"all": {"kind": "pml", "thickness": 2}, "side": "none"}),
+                                     ("cut", {"polygon": [[100, -120], [115, -118], [118, -105], [108, -109], [101, -100]]}, {"side_2": "pmc"})):
+        file, tags = mesh(folder, board, name, "--study", study(folder, name, region=region, boundaries=boundaries, **hollow))
+        check_msh(file, tags)
+    refused(folder, board, 2, ["/boundaries/xmin", "layer In1.Cu", "copper of GND"], "--study",
+            study(folder, "off", region={"box": {"min": [100, -120], "max": [115, -105]}}, boundaries={"xmin": "periodic", "xmax": "periodic"}, **hollow))
+
+
 gmsh.initialize()
 gmsh.option.setNumber("General.Terminal", 0)
 with tempfile.TemporaryDirectory() as scratch:
-    for step in (polygons, matched_layers, periodic_pairs, symmetry_planes, all_faults_in_one_run):
+    for step in (polygons, matched_layers, periodic_pairs, symmetry_planes, all_faults_in_one_run, real_board):
         if len(sys.argv) < 2 or step.__name__ in sys.argv[1:]:
             step(pathlib.Path(scratch))
 gmsh.finalize()

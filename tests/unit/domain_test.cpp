@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The domain: polygons, perfectly matched layers, periodic pairs.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -70,6 +72,59 @@ TEST(PeriodicSides, T6_BothSidesHaveTheSameVerticesInTheSameOrder) {
       if (i > 0) {
         EXPECT_EQ(low[i - 1] < low[i], high[i - 1] < high[i]) << more;
       }
+    }
+  }
+}
+
+/// Lines that wander and repeat after 10 mm, wherever the cell is cut out of them.
+std::string random_cell(std::mt19937& random, double& x) {
+  const auto between = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
+  std::string nets = R"("GND")", tracks;
+  const int num_lines = 1 + static_cast<int>(random() % 4);
+  for (int line = 0; line < num_lines; ++line) {
+    std::array<std::array<double, 2>, 3> base{};
+    for (std::size_t i = 0; i < 3; ++i)
+      base[i] = {3 * static_cast<double>(i) + between(-0.5, 0.5), -6 + 4 * line + between(-1.2, 1.2)};
+    std::string points;
+    for (int period = -1; period < 4; ++period)
+      for (const auto& [px, py] : base)
+        points += fmt::format("{}[{:.5f}, {:.5f}]", points.empty() ? "" : ", ", px + 10 * period, py);
+    nets += fmt::format(", \"N{}\"", line);
+    tracks += fmt::format(R"({}{{"layer": "top", "net": "N{}", "width": {:.3f}, "points": [{}]}})", tracks.empty() ? "" : ", ",
+                          line, between(0.15, 0.5), points);
+  }
+  x = std::round(between(0, 9) * 1e4) * 1e-4;
+  return fmt::format(R"({{"pcbmesh_board": 1, "units": "mm", "outline": {{"rect": [[-30, -30], [60, 30]]}},
+    "materials": [{{"name": "core", "eps_r": 4}}],
+    "stackup": [{{"name": "top", "kind": "copper", "thickness": "35um"}},
+      {{"name": "core", "kind": "dielectric", "thickness": "500um", "material": "core"}}, {{"name": "bottom", "kind": "copper", "thickness": "35um"}}],
+    "nets": [{}], "tracks": [{}], "planes": [{{"layer": "bottom", "net": "GND", "rect": [[-29, -29], [59, 29]], "holes": [
+      {{"circle": {{"at": [-5, 9], "diameter": 1.2}}}}, {{"circle": {{"at": [5, 9], "diameter": 1.2}}}},
+      {{"circle": {{"at": [15, 9], "diameter": 1.2}}}}, {{"circle": {{"at": [25, 9], "diameter": 1.2}}}}]}}]}})",
+                     nets, tracks);
+}
+
+TEST(PeriodicSides, RandomCellsMatchWhereverTheyAreCut) {
+  std::mt19937 random(7);
+  for (int round = 0; round < 40; ++round) {
+    double x = 0;
+    const board::Board board = formats::native_json::parse_board(random_cell(random, x), "cell.json").board;
+    constexpr const char* modes[] = {"solid", "hollow", "sheet"};
+    const study::Study study = parsed(fmt::format(
+        R"("region": {{"box": {{"min": [{}, -9], "max": [{}, 12]}}}}, "boundaries": {{"xmin": "periodic", "xmax": "periodic"}},
+           "conductors": {{"mode": "{}"}}, "mesh": {{"longest_edge": {}, "height_policy": "none", "seed": "{}"}})",
+        x, x + 10, modes[round % 3], round % 2 == 0 ? 3 : 0.7, round % 5 == 0 ? "hex" : "delaunay"));
+    try {
+      const mesh::PlanarMesh planar = pipeline::mesh_board(board, study).mesh.planar();
+      const auto low = on_side(planar, 0, std::round(x * 1e6) * metres_per_nm),
+                 high = on_side(planar, 0, std::round(x * 1e6 + 1e7) * metres_per_nm);
+      ASSERT_GT(low.size(), 6U) << round;
+      ASSERT_EQ(low.size(), high.size()) << round;
+      for (std::size_t i = 0; i < low.size(); ++i)
+        EXPECT_EQ(planar.points_m()[static_cast<std::size_t>(low[i])][1],
+                  planar.points_m()[static_cast<std::size_t>(high[i])][1]);
+    } catch (const Error& error) {
+      ADD_FAILURE() << "round " << round << " at " << x << ": " << error.what();
     }
   }
 }
