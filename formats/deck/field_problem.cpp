@@ -35,8 +35,8 @@ std::vector<Volume> volumes_of(const mesh::PrismMesh& mesh) {
     const mesh::VolumeTag& tag = mesh.volume_tags()[i];
     if (tag.num_prisms == 0) continue;
     const board::Material& material = mesh.materials()[static_cast<std::size_t>(tag.material)];
-    volumes.push_back(
-        {tag.id, names[i], tag.net, material, tag.net >= 0 || material.sigma_s_per_m >= tags_json::conductor_sigma_s_per_m});
+    volumes.push_back({tag.id, names[i], tag.net, material,
+                       tag.net >= 0 || material.sigma_s_per_m >= tags_json::conductor_sigma_s_per_m, tag.stretched});
   }
   return volumes;
 }
@@ -73,6 +73,7 @@ std::vector<Face> faces_of(const mesh::PrismMesh& mesh, std::int32_t first_face_
     face.impedance_ohm = tag.impedance_ohm;
     face.thickness_m = tag.thickness_m;
     face.media = media[i];
+    if (tag.partner >= 0) face.partner = mesh.face_tags()[static_cast<std::size_t>(tag.partner)].id + first_face_id;
     if (tag.material >= 0) face.metal = mesh.materials()[static_cast<std::size_t>(tag.material)];
     faces.push_back(std::move(face));
   }
@@ -224,9 +225,29 @@ std::string FieldProblem::stem() const {
   return std::filesystem::path(options.mesh).stem().string();
 }
 
+namespace {
+
+std::array<double, 2> extent_of(const mesh::PlanarMesh& planar) {
+  std::array<double, 2> extent{};
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const auto [low, high] = std::ranges::minmax_element(planar.points_m(), {}, [&](const auto& p) { return p[axis]; });
+    if (low != planar.points_m().end()) extent[axis] = (*high)[axis] - (*low)[axis];
+  }
+  return extent;
+}
+
+}  // namespace
+
 FieldProblem state(const mesh::PrismMesh& mesh, const DeckOptions& options, std::int32_t first_face_id,
                    Diagnostics& diagnostics) {
-  FieldProblem problem{options, volumes_of(mesh), faces_of(mesh, first_face_id), {}, {}, {}};
+  FieldProblem problem{.options = options,
+                       .volumes = volumes_of(mesh),
+                       .faces = faces_of(mesh, first_face_id),
+                       .ports = {},
+                       .conductors = {},
+                       .floating = {}};
+  problem.shell = mesh.shell();
+  problem.period_m = extent_of(mesh.planar());
   add_ports(mesh, first_face_id, problem);
   add_conductors(mesh, problem);
   if (const std::vector<std::string> found = flaws(problem); !found.empty())

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,7 +23,8 @@ struct Volume {
   std::string name;
   std::int32_t net = -1;
   board::Material material;
-  bool is_conductor = false;  ///< no field inside: skin depth is far below any mesh
+  bool is_conductor = false;   ///< no field inside: skin depth is far below any mesh
+  std::uint8_t stretched = 0;  ///< axes of a perfectly matched layer, as in mesh::VolumeTag
 };
 
 /// What lies behind a face group between two heights: mean over the area, conductors left out.
@@ -42,6 +45,7 @@ struct Face {
   board::Material metal;        ///< condition conductor
   double thickness_m = 0;       ///< condition conductor on a sheet; 0 = thick
   std::int32_t port = -1;       ///< index into ports
+  std::int32_t partner = -1;    ///< condition periodic: id of the opposite side
   std::vector<Medium> media{};  ///< condition absorbing: bottom to top
 };
 
@@ -63,6 +67,8 @@ struct FieldProblem {
   std::vector<FieldPort> ports;  ///< those with faces in the mesh, in the mesh's order
   std::vector<Conductor> conductors;
   std::vector<std::int32_t> floating;  ///< ids of volumes of copper without a net
+  std::optional<mesh::Shell> shell{};  ///< perfectly matched layers
+  std::array<double, 2> period_m{};    ///< lengths of the domain along x and y
 
   [[nodiscard]] std::vector<std::int32_t> faces_with(mesh::BoundaryCondition condition) const;
   /// File name of the mesh without its ending.

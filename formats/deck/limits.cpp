@@ -26,9 +26,10 @@ void require_ports(const Limits& limits, const FieldProblem& problem) {
 
 void require_faces(const Limits& limits, const FieldProblem& problem) {
   for (const Face& face : problem.faces) {
-    if (face.condition == BoundaryCondition::periodic)
-      refuse(limits.solver, fmt::format("the periodic side '{}' without a matching mesh", face.name),
-             "pec, pmc or absorbing there");
+    const bool links_sides = limits.periodic_sides && problem.options.problem != Problem::electrostatic;
+    if (face.condition == BoundaryCondition::periodic && !links_sides)
+      refuse(limits.solver, fmt::format("the periodic side '{}' in a {} problem", face.name, name_of(problem.options.problem)),
+             "pec or pmc on both sides, which are planes of symmetry");
     const bool is_lossy = face.condition == BoundaryCondition::absorbing || face.condition == BoundaryCondition::impedance ||
                           face.condition == BoundaryCondition::port;
     if (problem.options.problem == Problem::eigenmode && is_lossy && !limits.lossy_resonances)

@@ -122,6 +122,14 @@ std::string sweep(const deck::FieldProblem& problem, const std::string& results)
 
 }  // namespace
 
+namespace {
+
+std::string times(const std::string& factor) {
+  return factor.empty() ? factor : "*" + factor;
+}
+
+}  // namespace
+
 std::string driven_pro(const deck::FieldProblem& problem) {
   const double unit_m = metres_per(problem.options.unit);
   const std::string results = deck::result_files(problem).written;
@@ -144,12 +152,15 @@ std::string driven_pro(const deck::FieldProblem& problem) {
   out +=
       "  Omega[] = 2*Pi*$frequency;  k0[] = Omega[]*Unit/Light;  I[] = Complex[0, 1];\n"
       "  Tanh_Of[] = (1 - Exp[-2*$1])/(1 + Exp[-2*$1]);\n";
+  out += stretch_functions(problem, unit_m);
   for (const deck::Volume& volume : problem.volumes)
     if (!volume.is_conductor)
-      out += fmt::format("  eps_Vol[Vol_{0}] = {1};  nu_Vol[Vol_{0}] = {2};  // {3}\n", volume.id,
-                         permittivity(volume.material), number(1 / volume.material.mu_r), deck::plain(volume.name));
+      out += fmt::format("  eps_Vol[Vol_{0}] = {1}{2};  nu_Vol[Vol_{0}] = {3}{4};  // {5}\n", volume.id,
+                         permittivity(volume.material), times(stretch_tensor(volume.stretched, false)),
+                         number(1 / volume.material.mu_r), times(stretch_tensor(volume.stretched, true)),
+                         deck::plain(volume.name));
   out += port_constants(problem, unit_m) + admittances(problem, unit_m) + "}\n";
-  out += edge_space("Dom_E");
+  out += edge_space(problem, "Dom_E");
   out += integration();
   out += R"(Formulation {
   { Name Form_E; Type FemEquation; Quantity { { Name e; Type Local; NameOfSpace Hcurl_E; } }

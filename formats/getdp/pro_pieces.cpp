@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
+
 #include "formats/getdp/write_pro.hpp"
 
 namespace pcbmesh::formats::getdp {
@@ -59,9 +61,21 @@ Integration {
 )";
 }
 
-std::string edge_space(std::string_view support) {
+std::string edge_space(const deck::FieldProblem& problem, std::string_view support) {
+  std::string links;
+  for (const deck::Face& face : problem.faces) {
+    if (face.condition != mesh::BoundaryCondition::periodic || !face.name.ends_with("max")) continue;
+    const double unit_m = metres_per(problem.options.unit);
+    const bool in_x = face.name.starts_with('x');
+    const std::string back = number(problem.period_m[in_x ? 0 : 1] / unit_m);
+    links += fmt::format(
+        "    {{ Region Sur_{}; Type Link; RegionRef Sur_{}; Coefficient 1.; Function Vector[X[]{}, Y[]{}, Z[]]; }}\n", face.id,
+        face.partner, in_x ? "-" + back : "", in_x ? "" : "-" + back);
+  }
   return fmt::format(R"(Constraint {{
-  {{ Name Con_Metal; Type Assign; Case {{ {{ Region Dom_Metal; Value 0.; }} }} }}
+  {{ Name Con_Metal; Case {{
+    {{ Region Dom_Metal; Type Assign; Value 0.; }}
+{}  }} }}
 }}
 FunctionSpace {{
   {{ Name Hcurl_E; Type Form1;
@@ -69,7 +83,45 @@ FunctionSpace {{
     Constraint {{ {{ NameOfCoef ee; EntityType EdgesOf; NameOfConstraint Con_Metal; }} }} }}
 }}
 )",
-                     support);
+                     links, support);
+}
+
+std::string stretch_functions(const deck::FieldProblem& problem, double unit_m) {
+  if (!problem.shell) return {};
+  // A conductivity of the coordinate itself, so that what comes back from the outer face has lost the same at every frequency:
+  // the usual choice, J.-P. Berenger, J. Comput. Phys. 114, 1994. More loss than this is reflected by the coarse layers.
+  constexpr double wanted_reflection = 1e-3;
+  const mesh::Shell& shell = *problem.shell;
+  std::string out;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const char name = static_cast<char>('x' + axis), coordinate = static_cast<char>('X' + axis);
+    std::string branches;
+    const auto add = [&](bool is_high, double inner_m, double outer_m) {
+      const double thickness_m = std::abs(outer_m - inner_m);
+      if (thickness_m <= 0) return;
+      const double sigma = -(shell.order + 1) * std::log(wanted_reflection) / (2 * deck::free_space_ohm * thickness_m);
+      const std::string inner = number(inner_m / unit_m), depth = number(thickness_m / unit_m);
+      branches += fmt::format("({0}[] {1} {2}) ? Complex[1., -{3}*(Fabs[{0}[] - ({2})]/{4})^{5}/(Omega[]*Eps0)] : ", coordinate,
+                              is_high ? ">" : "<", inner, number(sigma), depth, shell.order);
+    };
+    add(false, shell.inner_min_m[axis], shell.outer_min_m[axis]);
+    add(true, shell.inner_max_m[axis], shell.outer_max_m[axis]);
+    out += fmt::format("  s_{}[] = {}Complex[1., 0.];\n", name, branches);
+  }
+  return out;
+}
+
+std::string stretch_tensor(std::uint8_t axes, bool is_inverse) {
+  if (axes == 0) return {};
+  const auto s = [&](std::size_t axis) {
+    return ((axes >> axis) & 1) != 0 ? fmt::format("s_{}[]", static_cast<char>('x' + axis)) : std::string("1.");
+  };
+  std::string entries;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::string along = s(axis), across = s((axis + 1) % 3) + "*" + s((axis + 2) % 3);
+    entries += (axis > 0 ? ", " : "") + (is_inverse ? along + "/(" + across + ")" : across + "/" + along);
+  }
+  return fmt::format("TensorDiag[{}]", entries);
 }
 
 }  // namespace pcbmesh::formats::getdp

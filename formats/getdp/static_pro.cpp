@@ -45,7 +45,7 @@ std::string eigenmode_pro(const deck::FieldProblem& problem) {
   // Gradients are static solutions of no interest; they lie at zero but for rounding.
   out += fmt::format("  Hz_Per_Root = {};\n  Is_Wave[] = Norm[$EigenvalueReal] > {};\n}}\n", number(hz_per_root),
                      number(1e-3 * std::min(target, target * target)));
-  out += edge_space("Vol_Field");
+  out += edge_space(problem, "Vol_Field");
   out += integration();
   out += R"(Formulation {
   { Name Form_E; Type FemEquation; Quantity { { Name e; Type Local; NameOfSpace Hcurl_E; } }

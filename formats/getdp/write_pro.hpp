@@ -26,7 +26,12 @@ namespace pcbmesh::formats::getdp {
 /// Jacobian and Integration, the same in every deck. Exact for products of two lowest-order functions.
 [[nodiscard]] std::string_view integration();
 /// Edge-element space with no tangential field on conductors.
-[[nodiscard]] std::string edge_space(std::string_view support);
+[[nodiscard]] std::string edge_space(const deck::FieldProblem& problem, std::string_view support);
+
+/// Stretch of the coordinates in perfectly matched layers, as functions s_x[], s_y[], s_z[]; empty without layers.
+[[nodiscard]] std::string stretch_functions(const deck::FieldProblem& problem, double unit_m);
+/// What a stretch of these axes multiplies permittivity (and, inverted, reluctivity) with; empty for no axis.
+[[nodiscard]] std::string stretch_tensor(std::uint8_t axes, bool is_inverse);
 /// Numbers that read back to the same value.
 [[nodiscard]] std::string number(double value);
 

@@ -112,6 +112,14 @@ void read_volumes(const Tables& in, PrismMeshParts& parts) {
   in.integers("/volumes/net", tags, [](auto& t, std::int64_t v) { t.net = as_index(v); });
   in.integers("/volumes/num_prisms", tags, [](auto& t, std::int64_t v) { t.num_prisms = v; });
   in.reals("/volumes/volume_m3", tags, [](auto& t, double v) { t.volume_m3 = v; });
+  // Files of earlier programs have no matched layers.
+  if (in.file().has("/volumes/stretched"))
+    in.integers("/volumes/stretched", tags, [](auto& t, std::int64_t v) { t.stretched = static_cast<std::uint8_t>(v & 7); });
+  if (!in.file().has("/shell/boxes")) return;
+  const auto boxes = in.rows<double, 3>("/shell/boxes");
+  const auto order = in.integers("/shell/order");
+  if (boxes.size() != 4 || order.size() != 1) in.file().fail("/shell/boxes", "expected four corners and one order");
+  parts.shell = mesh::Shell{boxes[0], boxes[1], boxes[2], boxes[3], order[0]};
 }
 
 void read_faces(const Tables& in, PrismMeshParts& parts) {

@@ -94,6 +94,13 @@ void write_tables(Tables& out, hdf5::FileWriter& file, const PrismMesh& mesh) {
   out.column<std::int64_t>("/volumes/num_prisms", mesh.volume_tags(), [](const auto& t) { return t.num_prisms; });
   out.column<double>("/volumes/volume_m3", mesh.volume_tags(), [](const auto& t) { return t.volume_m3; });
 
+  out.column<std::uint8_t>("/volumes/stretched", mesh.volume_tags(), [](const auto& t) { return t.stretched; });
+  if (const auto& shell = mesh.shell()) {
+    const std::array boxes{shell->inner_min_m, shell->inner_max_m, shell->outer_min_m, shell->outer_max_m};
+    out.rows<double, 3>("/shell/boxes", boxes, same);
+    out.column<std::int32_t>("/shell/order", std::array{shell->order}, same);
+  }
+
   const auto faces = mesh.face_tags();
   out.column<std::int32_t>("/faces/tag", faces, [](const auto& t) { return t.id; });
   out.names("/faces/name", faces, name);

@@ -249,7 +249,7 @@ std::optional<JsonValue> JsonValue::find_set(std::string_view name) const {
   return member && member->is(JsonKind::null) ? std::nullopt : member;
 }
 
-void JsonValue::allow_only(std::initializer_list<std::string_view> names) const {
+void JsonValue::allow_only(const std::vector<std::string_view>& names) const {
   if (!is(JsonKind::object)) fail_kind("an object");
   for (JsonValue member : *this) {
     if (std::find(names.begin(), names.end(), member.key()) != names.end()) continue;

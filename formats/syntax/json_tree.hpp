@@ -59,7 +59,8 @@ class JsonValue {
   /// Like find, but null counts as absent.
   [[nodiscard]] std::optional<JsonValue> find_set(std::string_view name) const;
   /// Errors unless this is an object whose members are all among `names`; suggests the nearest name.
-  void allow_only(std::initializer_list<std::string_view> names) const;
+  void allow_only(std::initializer_list<std::string_view> names) const { allow_only(std::vector<std::string_view>(names)); }
+  void allow_only(const std::vector<std::string_view>& names) const;
 
   const JsonValue& as_array() const;
   [[nodiscard]] std::string_view as_string() const;

@@ -50,6 +50,7 @@ Json volumes(const mesh::PrismMesh& mesh) {
                    {"material", material.name},
                    {"net", net_or_null(mesh, tag.net)},
                    {"conductor", tag.net >= 0 || material.sigma_s_per_m >= conductor_sigma_s_per_m},
+                   {"stretched", tag.stretched == 0 ? Json(nullptr) : Json(mesh::axes_text(tag.stretched))},
                    {"num_cells", tag.num_prisms},
                    {"volume_m3", tag.volume_m3}});
   }
@@ -176,6 +177,14 @@ Json nets(const mesh::PrismMesh& mesh) {
   return out;
 }
 
+Json shell(const mesh::PrismMesh& mesh) {
+  if (!mesh.shell()) return nullptr;
+  const mesh::Shell& shell = *mesh.shell();
+  return {{"inner_m", {{"min", shell.inner_min_m}, {"max", shell.inner_max_m}}},
+          {"outer_m", {{"min", shell.outer_min_m}, {"max", shell.outer_max_m}}},
+          {"order", shell.order}};
+}
+
 Json touching_nets(const mesh::PrismMesh& mesh) {
   Json out = Json::array();
   for (const auto& [a, b] : mesh.touching_nets()) out.push_back({net_or_null(mesh, a), net_or_null(mesh, b)});
@@ -241,6 +250,7 @@ void write_tags(const mesh::PrismMesh& mesh, const std::filesystem::path& file, 
   out["volumes"] = volumes(mesh);
   out["faces"] = faces(mesh, first_face_id);
   if (written != nullptr) put_counts(out, *written, first_face_id);
+  out["shell"] = shell(mesh);
   out["ports"] = ports(mesh);
   out["materials"] = materials(mesh);
   out["nets"] = nets(mesh);

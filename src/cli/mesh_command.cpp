@@ -82,7 +82,7 @@ int run(const Options& options) {
   BegunStudy begun = begin_study(*options.study);
   const bool is_begun_here = wants_ports(begun);
   if (is_begun_here) take_first_answers(*options.study, begun.study);
-  study::Study study = is_begun_here ? begun.study : study_from(*options.study);
+  study::Study study = is_begun_here ? begun.study : unchecked_study_from(*options.study);
   study.solver = begun.solver;
   pipeline::OutputOptions output = output_options(options, study.unit);
   prepare_for_solver(study, options.board, output);
@@ -92,8 +92,8 @@ int run(const Options& options) {
   const formats::ReadBoardResult read = formats::read_board(options.board, options.from, progress);
   if (is_begun_here) study = with_ports(read.board, options, std::move(begun));
   pipeline::MeshBoardResult result = mesh_or_draw(
-      read.board, study, options.outputs.empty() ? std::filesystem::path() : std::filesystem::path(options.outputs.front()),
-      progress);
+      read.board, study, options.study->file,
+      options.outputs.empty() ? std::filesystem::path() : std::filesystem::path(options.outputs.front()), progress);
   Diagnostics all = read.diagnostics;
   all.merge(result.diagnostics);
   result.diagnostics = std::move(all);

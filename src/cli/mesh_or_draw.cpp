@@ -11,11 +11,14 @@
 namespace pcbmesh::cli {
 
 pipeline::MeshBoardResult mesh_or_draw(const board::Board& board, const study::Study& study,
-                                       const std::filesystem::path& output, const Progress& progress) {
+                                       const std::filesystem::path& study_file, const std::filesystem::path& output,
+                                       const Progress& progress) {
   try {
     return pipeline::mesh_board(board, study, progress);
-  } catch (const Error& error) {
-    if (!error.spot().at_mm || output.empty()) throw;
+  } catch (const Error& told) {
+    const Error error =
+        study_file.empty() ? told : Error(told.code(), study::with_lines(told.text(), study_file), told.spot(), told.ids());
+    if (!error.spot().at_mm || output.empty()) throw error;
     const std::filesystem::path picture = pipeline::file_beside(output, ".refusal.svg");
     try {
       pipeline::write_text_file(picture, view::refusal_svg(board, error));
@@ -24,7 +27,7 @@ pipeline::MeshBoardResult mesh_or_draw(const board::Board& board, const study::S
     }
     clear_progress();
     fmt::print(stderr, "pcbmesh: the place is drawn in {}\n", picture.string());
-    throw;
+    throw error;
   }
 }
 

@@ -90,18 +90,23 @@ study::Port parse_port(const std::string& text) {
   return port;
 }
 
-/// "SIDE=KIND", "impedance" with its ohms after a colon; SIDE may be "all".
+/// "SIDE=KIND", "impedance" with its ohms and "pml" with its thickness after a colon; SIDE may be "all".
 void take_boundary(const std::string& text, study::Study& study) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos)
     throw Error(ErrorCode::usage,
                 fmt::format("--boundary '{}': expected SIDE=KIND, e.g. zmin=pec or all=absorbing or xmin=impedance:377", text));
   const std::vector<std::string> parts = split_at(text.substr(equals + 1), ':');
-  study::Boundary boundary{study::parse_boundary_kind(parts[0]), 0};
+  study::Boundary boundary{.kind = study::parse_boundary_kind(parts[0])};
   if (parts.size() == 2 && boundary.kind == study::BoundaryKind::impedance)
     boundary.ohms = number_in(parts[1], "--boundary");
-  else if (parts.size() != 1)
-    throw Error(ErrorCode::usage, fmt::format("--boundary '{}': only an impedance has a number", text));
+  else if (parts.size() == 2 && boundary.kind == study::BoundaryKind::pml)
+    boundary.thickness = parse_length(parts[1]);
+  else if (parts.size() != 1 || boundary.kind == study::BoundaryKind::pml)
+    throw Error(ErrorCode::usage,
+                fmt::format("--boundary '{}': an impedance has its ohms (impedance:377), a pml its thickness (pml:3mm), the "
+                            "others have nothing",
+                            text));
   if (const std::string side = text.substr(0, equals); side == "all")
     study.boundaries.fill(boundary);
   else

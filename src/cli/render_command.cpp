@@ -75,13 +75,13 @@ int run(const Options& options) {
     throw Error(ErrorCode::usage, fmt::format("-o '{}': a picture ends in .png or .svg", options.output));
   static_cast<void>(view::parse_camera(options.picture->view));
   if (!options.picture->colour.empty()) static_cast<void>(view::parse_colour_mode(options.picture->colour));
-  const study::Study study = study_from(*options.study);
+  const study::Study study = unchecked_study_from(*options.study);
   const Progress progress = terminal_progress(options.quiet);
   progress.at("read", 0);
   std::optional<MeshInput> input = read_if_mesh(options.board, options.input_unit, progress);
   if (!input) {
     const formats::ReadBoardResult read = formats::read_board(options.board, options.from, progress);
-    input = MeshInput{.prisms = mesh_or_draw(read.board, study, options.output, progress).mesh};
+    input = MeshInput{.prisms = mesh_or_draw(read.board, study, options.study->file, options.output, progress).mesh};
   }
   progress.at("draw", 0);
   const bool is_png = ending == ".png";

@@ -114,8 +114,8 @@ std::shared_ptr<StudyOptions> add_study_options(CLI::App& command) {
   return o;
 }
 
-study::Study study_from(const StudyOptions& o) {
-  study::Study s = o.file.empty() ? study::Study{} : study::read_study(o.file);
+study::Study unchecked_study_from(const StudyOptions& o) {
+  study::Study s = o.file.empty() ? study::Study{} : study::read_unchecked_study(o.file);
   if (!o.nets.empty()) {
     s.region = study::RegionKind::nets;
     s.nets = split_at_commas(o.nets);
@@ -169,7 +169,17 @@ study::Study study_from(const StudyOptions& o) {
   take_physics_options(o, s);
   const bool is_posed_here = !o.solver.empty() || !o.problem.empty();
   if (is_posed_here && o.split.empty() && study::needs_tetrahedra(s)) s.split = study::ElementSplit::tetrahedra;
-  study::check(s);
+  return s;
+}
+
+study::Study study_from(const StudyOptions& o) {
+  study::Study s = unchecked_study_from(o);
+  try {
+    study::check(s);
+  } catch (const Error& error) {
+    if (o.file.empty()) throw;
+    throw Error(error.code(), study::with_lines(error.text(), o.file), {.file = o.file});
+  }
   return s;
 }
 

@@ -31,5 +31,7 @@ struct StudyOptions {
 
 /// Study file, then flags. @throws Error usage (101), study_invalid (102).
 [[nodiscard]] study::Study study_from(const StudyOptions& options);
+/// The same without a look at ranges and combinations, which meshing looks at together with the board.
+[[nodiscard]] study::Study unchecked_study_from(const StudyOptions& options);
 
 }  // namespace pcbmesh::cli

@@ -88,13 +88,13 @@ int run(const Options& options) {
   const std::string ending = std::filesystem::path(options.output).extension().string();
   if (ending != ".html" && ending != ".htm")
     throw Error(ErrorCode::usage, fmt::format("-o '{}': a report ends in .html", options.output));
-  const study::Study study = study_from(*options.study);
+  const study::Study study = unchecked_study_from(*options.study);
   const Progress progress = terminal_progress(options.quiet);
   progress.at("read", 0);
   if (const auto mesh = read_if_mesh(options.board, options.input_unit, progress))
     return mesh->prisms ? run_mesh(options, *mesh->prisms, progress) : run_mesh(options, *mesh, progress);
   const formats::ReadBoardResult read = formats::read_board(options.board, options.from, progress);
-  pipeline::MeshBoardResult result = mesh_or_draw(read.board, study, options.output, progress);
+  pipeline::MeshBoardResult result = mesh_or_draw(read.board, study, options.study->file, options.output, progress);
   Diagnostics all = read.diagnostics;
   all.merge(result.diagnostics);
   result.diagnostics = std::move(all);

@@ -83,7 +83,7 @@ BodyShape shape_of(const geometry::Figure& figure, const study::Study& study, co
   BodyShape shape;
   shape.line = line;
   for (Ring& ring : geometry::outline(figure, study.arcs, shape.simple))
-    if (Ring kept = clipped(std::move(ring), footprint.clip); kept.size() >= 3) shape.rings.push_back(std::move(kept));
+    if (Ring kept = footprint.cut(std::move(ring)); kept.size() >= 3) shape.rings.push_back(std::move(kept));
   return shape;
 }
 

@@ -5,7 +5,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <string>
+#include <string_view>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -18,6 +20,7 @@
 #include "src/compose/mask.hpp"
 #include "src/compose/materials.hpp"
 #include "src/compose/ports.hpp"
+#include "src/compose/shell.hpp"
 #include "src/compose/stack.hpp"
 
 namespace pcbmesh::compose {
@@ -36,9 +39,12 @@ model::SideCondition side_condition(const study::Boundary& boundary) {
       return {model::SideKind::pmc, 0};
     case study::BoundaryKind::impedance:
       return {model::SideKind::impedance, boundary.ohms};
+    case study::BoundaryKind::periodic:
+      return {model::SideKind::periodic, 0};
+    case study::BoundaryKind::pml:
+      return side_condition({.kind = boundary.backing});
     case study::BoundaryKind::none:
     case study::BoundaryKind::automatic:  // resolved before
-    case study::BoundaryKind::periodic:   // refused by study::check
       break;
   }
   return {};
@@ -49,9 +55,9 @@ struct ResolvedNames {
   std::vector<std::int32_t> nets;
   std::vector<ResolvedRule> rules;
   HolePlan holes;
-  std::vector<ResolvedFill> fills;  ///< per copper layer
-  std::string unknown;              ///< what was not found; empty = nothing
-  bool must_stop = false;           ///< what is unknown concerns how the board is made
+  std::vector<ResolvedFill> fills;   ///< per copper layer
+  std::vector<study::Fault> faults;  ///< what was not found; names that are wrong
+  bool must_stop = false;            ///< they concern the region or how the board is made: no port can be placed
 };
 
 /// Looks names up and collects every unknown one, so that one run tells them all.
@@ -135,16 +141,16 @@ HolePlan resolve_holes(const study::Fabrication& fabrication, NameResolver& reso
 }
 
 /// Drills start at a face of the board.
-void require_backdrills_from_outside(const Board& board, const Study& study, const HolePlan& plan) {
+void check_backdrills(const Board& board, const Study& study, const HolePlan& plan, std::vector<study::Fault>& faults) {
   const auto last = static_cast<std::int32_t>(board.copper_layers().size()) - 1;
   for (std::size_t i = 0; i < plan.backdrills.size(); ++i) {
     const ResolvedBackdrill& b = plan.backdrills[i];
     if ((b.first_copper == 0) != (b.last_copper == last)) continue;
-    throw Error(ErrorCode::study_invalid,
-                fmt::format("/backdrill/{}: from {} to {} {}; a backdrill starts at {} or {} and ends before the other", i,
-                            study.fabrication.backdrills[i].from, study.fabrication.backdrills[i].to,
-                            b.first_copper == 0 ? "goes through the whole board" : "starts inside the board",
-                            board.copper_name(0), board.copper_name(last)));
+    faults.push_back({fmt::format("/backdrill/{}", i),
+                      fmt::format("from {} to {} {}; a backdrill starts at {} or {} and ends before the other",
+                                  study.fabrication.backdrills[i].from, study.fabrication.backdrills[i].to,
+                                  b.first_copper == 0 ? "goes through the whole board" : "starts inside the board",
+                                  board.copper_name(0), board.copper_name(last))});
   }
 }
 
@@ -186,9 +192,13 @@ ResolvedNames resolve_names(const Board& board, const Study& study, MaterialTabl
   const std::string known_so_far = resolver.text();
   names.holes = resolve_holes(study.fabrication, resolver, materials);
   names.fills = resolve_fills(board, study.fabrication, resolver, materials);
-  names.unknown = resolver.text();
-  names.must_stop = names.unknown != known_so_far;
-  if (!names.must_stop) require_backdrills_from_outside(board, study, names.holes);
+  const std::string unknown = resolver.text();
+  if (!unknown.empty()) names.faults.push_back({"", unknown});
+  if (!materials.unknown().empty()) names.faults.push_back({"/materials/use", materials.unknown()});
+  if (unknown == known_so_far) check_backdrills(board, study, names.holes, names.faults);
+  // Where only terminals of ports are unknown, the other ports can be looked at.
+  names.must_stop =
+      unknown != known_so_far || !materials.unknown().empty() || std::ranges::count(names.nets, board::no_net) > 0;
   return names;
 }
 
@@ -207,15 +217,63 @@ void keep_every_outline(model::ModelParts& parts) {
   }
 }
 
+/// Whether faults leave the geometry of the domain in doubt, so that ports can't be looked at.
+bool is_about_geometry(const study::Fault& fault) {
+  constexpr std::array harmless{"/ports", "/sweep", "/modes", "/mesh", "/limits", "/output", "/solver", "/materials"};
+  return std::ranges::none_of(harmless, [&](std::string_view field) { return fault.field.starts_with(field); });
+}
+
+/// Code of an error that tells of several faults: the study's own first, then names, then the rest.
+ErrorCode code_of(const std::vector<study::Fault>& of_study, const ResolvedNames& names) {
+  if (!of_study.empty()) return ErrorCode::study_invalid;
+  if (names.faults.empty()) return ErrorCode::port_invalid;
+  return names.faults.front().field.starts_with("/backdrill") ? ErrorCode::study_invalid : ErrorCode::name_unknown;
+}
+
+/// Runs a step whose refusal is one fault among others.
+template <class Step>
+void gather(std::vector<study::Fault>& faults, Step&& step) {
+  try {
+    step();
+  } catch (const Error& error) {
+    const std::string place = error.spot().text();
+    faults.push_back({"", place.empty() ? error.text() : fmt::format("{} ({})", error.text(), place)});
+  }
+}
+
+/// Everything that is wrong with a study, by itself and on this board.
+/// @throws Error that names it all, of the code of the first.
+void require_no_faults(const Board& board, const Study& study, const ResolvedNames& names, const MaterialTable& materials) {
+  const std::vector<study::Fault> of_study = study::faults_of(study);
+  std::vector<study::Fault> without;
+  if (study.solver != study::Solver::none) without = materials.layers_without_permittivity(board);
+  if (of_study.empty() && names.faults.empty() && without.empty()) return;
+  std::vector<study::Fault> all = of_study;
+  all.insert(all.end(), names.faults.begin(), names.faults.end());
+  all.insert(all.end(), without.begin(), without.end());
+  if (!names.must_stop && std::ranges::none_of(of_study, is_about_geometry)) {
+    // What is told here is told again by nobody: diagnostics of a domain that is not built are dropped.
+    Diagnostics ignored;
+    gather(all, [&] {
+      const Footprint footprint = build_footprint(board, study, names.nets, ignored);
+      MaterialTable again(board, study, ignored);
+      const Stack stack =
+          build_stack(board, study, find_sheet_layers(board, study, names.rules, footprint), names.fills, again, ignored);
+      model::ModelParts parts;
+      add_ports(board, study, names.rules, footprint, stack, parts, all);
+    });
+  }
+  const bool only_permittivity = of_study.empty() && names.faults.empty() && all.size() == without.size();
+  throw Error(only_permittivity ? ErrorCode::stackup_invalid : code_of(of_study, names), study::text_of(all),
+              {.file = board.source()});
+}
+
 }  // namespace
 
 model::Model compose(const Board& board, const Study& study, Diagnostics& diagnostics) {
-  study::check(study);
   MaterialTable materials(board, study, diagnostics);
   const ResolvedNames names = resolve_names(board, study, materials);
-  // A region of unknown nets is nowhere; otherwise what is wrong with the ports is told in the same run.
-  if (!names.unknown.empty() && (study.ports.empty() || names.must_stop || std::ranges::count(names.nets, board::no_net) > 0))
-    throw Error(ErrorCode::name_unknown, names.unknown, {.file = board.source()});
+  require_no_faults(board, study, names, materials);
   const Footprint footprint = build_footprint(board, study, names.nets, diagnostics);
   Stack stack =
       build_stack(board, study, find_sheet_layers(board, study, names.rules, footprint), names.fills, materials, diagnostics);
@@ -231,16 +289,17 @@ model::Model compose(const Board& board, const Study& study, Diagnostics& diagno
   add_mask(board, study, footprint, stack, parts, diagnostics);
   if (study.paper_compat) keep_every_outline(parts);
   if (study.order == 2) add_circles(board, study, footprint, parts);
+  add_shell(study, footprint, stack, parts);
   std::vector<study::Fault> faults;
   add_ports(board, study, names.rules, footprint, stack, parts, faults);
-  if (!names.unknown.empty() || !faults.empty()) {
-    const std::string more = study::text_of(faults);
-    const std::string gap = names.unknown.empty() || more.empty() ? "" : "\n  ";
-    throw Error(names.unknown.empty() ? ErrorCode::port_invalid : ErrorCode::name_unknown, names.unknown + gap + more,
-                {.file = board.source()});
-  }
+  if (!faults.empty()) throw Error(ErrorCode::port_invalid, study::text_of(faults), {.file = board.source()});
   const auto boundaries = study::resolved_boundaries(study);
   for (std::size_t i = 0; i < study::num_hull_sides; ++i) parts.sides[i] = side_condition(boundaries[i]);
+  if (study.region == study::RegionKind::polygon) {
+    parts.outline = study.polygon;
+    for (const study::Boundary& boundary : study::resolved_polygon_boundaries(study))
+      parts.outline_sides.push_back(side_condition(boundary));
+  }
   parts.conductors_are_perfect = study.conductor_surface == study::ConductorSurface::pec;
   if (std::none_of(parts.bodies.begin(), parts.bodies.end(), [](const model::Body& body) {
         return body.kind == model::BodyKind::copper || body.kind == model::BodyKind::barrel;
@@ -252,10 +311,9 @@ model::Model compose(const Board& board, const Study& study, Diagnostics& diagno
 }
 
 std::vector<PortProposal> propose_ports(const Board& board, const Study& study, Diagnostics& diagnostics) {
-  study::check(study);
   MaterialTable materials(board, study, diagnostics);
   const ResolvedNames names = resolve_names(board, study, materials);
-  if (!names.unknown.empty()) throw Error(ErrorCode::name_unknown, names.unknown, {.file = board.source()});
+  require_no_faults(board, study, names, materials);
   const Footprint footprint = build_footprint(board, study, names.nets, diagnostics);
   const Stack stack =
       build_stack(board, study, find_sheet_layers(board, study, names.rules, footprint), names.fills, materials, diagnostics);

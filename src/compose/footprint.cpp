@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "pcbmesh/base/error.hpp"
+#include "pcbmesh/geometry/polygon_sets.hpp"
 #include "pcbmesh/geometry/ring_contact.hpp"
 
 namespace pcbmesh::compose {
@@ -191,9 +192,10 @@ Box nets_box(const Board& board, const Study& study, std::span<const std::int32_
   return box.grown(study.margin);
 }
 
-/// The domain's rectangle for a region, cut down to the board and the air beside it.
+/// The domain's rectangle for a region, cut down to the board and the air beside it. A polygon is taken as it is.
 Box region_box(const Board& board, const Study& study, std::span<const std::int32_t> nets, const Box& around,
                Diagnostics& diagnostics) {
+  if (study.region == RegionKind::polygon) return geometry::bounds(study.polygon);
   const Box wanted = study.region == RegionKind::box ? *study.box : nets_box(board, study, nets, diagnostics);
   const Box box = intersection(wanted, around);
   if (!has_area(box))
@@ -204,13 +206,72 @@ Box region_box(const Board& board, const Study& study, std::span<const std::int3
   return box;
 }
 
-}  // namespace
-
+/// The ring clipped to the box if it reaches out of it; empty if nothing is left.
 Ring clipped(Ring ring, const Box& box) {
   const Box own = geometry::bounds(ring);
   if (box.contains(own.min) && box.contains(own.max)) return ring;
   if (!box.touches(own)) return {};
   return geometry::clip_to_box(ring, box);
+}
+
+/// Every edge of the ring on the line `axis` = from is swept to `to`. Winding numbers beyond the line become those at it.
+Ring swept(const Ring& ring, Nm Point::*axis, Nm from, Nm to) {
+  Ring out;
+  const std::size_t n = ring.size();
+  const auto is_on = [&](std::size_t i) { return ring[i % n].*axis == from; };
+  for (std::size_t i = 0; i < n; ++i) {
+    const bool was = is_on(i + n - 1), is = is_on(i), will = is_on(i + 1);
+    if (!is || !was || !will) out.push_back(ring[i]);
+    if (!is || (!was && !will)) continue;
+    Point moved = ring[i];
+    moved.*axis = to;
+    if (was == will)
+      out.push_back(moved);
+    else if (will)
+      out.push_back(moved);  // the run begins: on the line, then beyond it
+    else
+      out.insert(out.end() - 1, moved);  // the run ends: beyond it, then on the line
+  }
+  return out;
+}
+
+/// Box of the domain with its matched layers.
+Box outer_box(const Box& box, const Study& study) {
+  const auto thickness = [&](study::HullSide side) {
+    const study::Boundary& boundary = study.boundaries[static_cast<std::size_t>(side)];
+    return boundary.kind == study::BoundaryKind::pml ? boundary.thickness : 0;
+  };
+  using study::HullSide;
+  return {{box.min.x - thickness(HullSide::xmin), box.min.y - thickness(HullSide::ymin)},
+          {box.max.x + thickness(HullSide::xmax), box.max.y + thickness(HullSide::ymax)}};
+}
+
+/// Whether a ring and the polygon of the region have area in common.
+bool meets(const Ring& ring, const Ring& polygon) {
+  return geometry::covered_mm2(geometry::intersected({ring}, {polygon})) > 0;
+}
+
+}  // namespace
+
+Ring Footprint::cut(Ring ring) const {
+  const Box far = outer.grown(clip_slack_nm);
+  Box clip = far;
+  if (goes_on[0]) clip.min.x = box.min.x;
+  if (goes_on[1]) clip.max.x = box.max.x;
+  if (goes_on[2]) clip.min.y = box.min.y;
+  if (goes_on[3]) clip.max.y = box.max.y;
+  ring = clipped(std::move(ring), clip);
+  // First along x, then along y, so that corners are filled.
+  if (!ring.empty() && goes_on[0]) ring = swept(ring, &Point::x, box.min.x, far.min.x);
+  if (!ring.empty() && goes_on[1]) ring = swept(ring, &Point::x, box.max.x, far.max.x);
+  if (!ring.empty() && goes_on[2]) ring = swept(ring, &Point::y, box.min.y, far.min.y);
+  if (!ring.empty() && goes_on[3]) ring = swept(ring, &Point::y, box.max.y, far.max.y);
+  return ring;
+}
+
+bool Footprint::contains(Point p) const {
+  if (!box.contains(p)) return false;
+  return domain.size() != 1 || geometry::location(p, domain.front()) >= 0;
 }
 
 Footprint build_footprint(const Board& board, const Study& study, std::span<const std::int32_t> nets,
@@ -224,26 +285,35 @@ Footprint build_footprint(const Board& board, const Study& study, std::span<cons
   const bool any_air = study.air_above > 0 || study.air_below > 0 || study.air_around > 0;
 
   footprint.box = study.region == RegionKind::whole ? around : region_box(board, study, nets, around, diagnostics);
+  footprint.outer = outer_box(footprint.box, study);
+  for (std::size_t side = 0; side < footprint.goes_on.size(); ++side)
+    footprint.goes_on[side] =
+        study.boundaries[side].kind == study::BoundaryKind::pml || study.boundaries[side].kind == study::BoundaryKind::periodic;
   const Box limit{{-max_coordinate_nm, -max_coordinate_nm}, {max_coordinate_nm, max_coordinate_nm}};
-  if (!limit.contains(footprint.box.min) || !limit.contains(footprint.box.max))
+  if (!limit.contains(footprint.outer.min) || !limit.contains(footprint.outer.max))
     throw Error(ErrorCode::study_invalid,
-                fmt::format("/air/around: the domain would reach beyond 1 m from the origin: {}", text_of(footprint.box)));
-  footprint.clip = footprint.box.grown(clip_slack_nm);
+                fmt::format("/air/around: the domain would reach beyond 1 m from the origin: {}", text_of(footprint.outer)));
   if (study.region == RegionKind::whole && !any_air)
     for (const BoardRings& rings : boards) footprint.domain.push_back(rings.outer);
   else
-    footprint.domain.push_back(rectangle(footprint.box));
+    footprint.domain.push_back(rectangle(footprint.outer));
+  const bool is_polygon = study.region == RegionKind::polygon;
+  if (is_polygon) {
+    footprint.domain = {study.polygon};
+    geometry::make_counter_clockwise(footprint.domain.front());
+  }
 
   bool board_in_domain = false;
   for (const BoardRings& rings : boards) {
     std::vector<Ring> kept;
-    Ring outer = clipped(rings.outer, footprint.clip);
+    Ring outer = footprint.cut(rings.outer);
     if (outer.empty()) continue;
-    const Ring inside = clipped(outer, footprint.box);
-    board_in_domain = board_in_domain || (!inside.empty() && geometry::twice_area_nm2(inside) != 0);
+    const Ring inside = clipped(rings.outer, footprint.box);
+    board_in_domain = board_in_domain || (!inside.empty() && geometry::twice_area_nm2(inside) != 0 &&
+                                          (!is_polygon || meets(inside, footprint.domain.front())));
     kept.push_back(std::move(outer));
     for (const Ring& cutout : rings.cutouts) {
-      Ring inner = clipped(cutout, footprint.clip);
+      Ring inner = footprint.cut(cutout);
       if (inner.empty()) continue;
       std::reverse(inner.begin(), inner.end());
       kept.push_back(std::move(inner));
@@ -254,7 +324,7 @@ Footprint build_footprint(const Board& board, const Study& study, std::span<cons
     throw Error(ErrorCode::region_empty, fmt::format("the region {} lies beside the board", text_of(footprint.box)),
                 {.file = board.source()});
   for (Ring& ring : loose)
-    if (Ring cut = clipped(std::move(ring), footprint.clip); !cut.empty()) footprint.loose_cutouts.push_back(std::move(cut));
+    if (Ring cut = footprint.cut(std::move(ring)); !cut.empty()) footprint.loose_cutouts.push_back(std::move(cut));
   return footprint;
 }
 

@@ -45,7 +45,7 @@ MaterialTable::MaterialTable(const board::Board& board, const study::Study& stud
   const study::Materials& wanted = study.fabrication.materials;
   library_.insert(library_.end(), wanted.library.begin(), wanted.library.end());
   materials_.assign(board.materials().begin(), board.materials().end());
-  choose(board, study);
+  choose(study);
   fill_in(board, diagnostics);
   if (wanted.stated.kind == DispersionKind::djordjevic_sarkar)
     for (Material& m : materials_)
@@ -56,9 +56,8 @@ MaterialTable::MaterialTable(const board::Board& board, const study::Study& stud
   for (Material& m : materials_) m = evaluated(std::move(m));
 }
 
-void MaterialTable::choose(const board::Board& board, const study::Study& study) {
-  std::string unknown;
-  const auto add = [&](std::string text) { unknown += (unknown.empty() ? "" : "; ") + std::move(text); };
+void MaterialTable::choose(const study::Study& study) {
+  const auto add = [&](std::string text) { unknown_ += (unknown_.empty() ? "" : "; ") + std::move(text); };
   std::vector<std::string> own;
   for (const Material& m : materials_) own.push_back(m.name);
   for (const study::MaterialChoice& choice : study.fabrication.materials.choices) {
@@ -71,7 +70,22 @@ void MaterialTable::choose(const board::Board& board, const study::Study& study)
     if (taken == nullptr) add(fmt::format("no library has a material '{}'{}", choice.take, near(choice.take)));
     if (mine != materials_.end() && taken != nullptr) *mine = renamed(*taken, mine->name);
   }
-  if (!unknown.empty()) throw Error(ErrorCode::name_unknown, "/materials/use: " + unknown, {.file = board.source()});
+}
+
+std::vector<study::Fault> MaterialTable::layers_without_permittivity(const board::Board& board) const {
+  std::vector<study::Fault> faults;
+  for (const board::StackupLayer& layer : board.stackup()) {
+    if (layer.kind == board::LayerKind::copper || layer.kind == board::LayerKind::solder_mask || layer.material < 0) continue;
+    const Material& m = materials_[static_cast<std::size_t>(layer.material)];
+    if (!m.is_assumed) continue;
+    faults.push_back(
+        {"/materials/use",
+         fmt::format("layer '{0}' has no permittivity: the board does not state that of its material '{1}', nor does "
+                     "the library know it, and a field solver can't guess; state it in the stackup, or name a "
+                     "material: \"materials\": {{\"use\": [{{\"board\": \"{1}\", \"take\": \"FR-4\"}}]}}",
+                     layer.name, m.name)});
+  }
+  return faults;
 }
 
 void MaterialTable::fill_in(const board::Board& board, Diagnostics& diagnostics) {

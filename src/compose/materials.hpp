@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -16,8 +17,13 @@ namespace pcbmesh::compose {
 /// permittivity and the library knows its name. Dispersive ones are evaluated at the study's frequency.
 class MaterialTable {
  public:
-  /// @throws Error name_unknown (304) listing every material that the study names in vain.
+  /// Materials that the study names in vain go into unknown().
   MaterialTable(const board::Board& board, const study::Study& study, Diagnostics& diagnostics);
+
+  /// What "/materials/use" names and nobody knows, in one sentence; empty = nothing.
+  [[nodiscard]] const std::string& unknown() const { return unknown_; }
+  /// A layer of the board between two copper layers whose permittivity nobody knows, for every such layer: what to do.
+  [[nodiscard]] std::vector<study::Fault> layers_without_permittivity(const board::Board& board) const;
 
   /// The board's own air if it has one; else air is added under a free name.
   [[nodiscard]] std::int32_t air();
@@ -30,9 +36,10 @@ class MaterialTable {
 
  private:
   [[nodiscard]] board::Material evaluated(board::Material material) const;
-  void choose(const board::Board& board, const study::Study& study);
+  void choose(const study::Study& study);
   void fill_in(const board::Board& board, Diagnostics& diagnostics);
 
+  std::string unknown_;
   std::vector<study::LibraryMaterial> library_;
   std::optional<double> frequency_hz_;
   std::vector<board::Material> materials_;

@@ -80,7 +80,7 @@ Outcome PortPlacer::at_pin(const study::Port& wanted, const Terminals& nets) con
     return failed(fmt::format("pin {} at {} belongs to {}, not to {}; {}", wanted.at.pin, place_text(other->at),
                               net_text(other->net), net_text(nets.positive), hint));
   if (pin == nullptr) return failed(fmt::format("the board has no pin '{}'; {}", wanted.at.pin, hint));
-  if (!footprint_.box.contains(pin->at))
+  if (!footprint_.contains(pin->at))
     return failed(fmt::format("pin {} at {} lies outside the domain; grow the region's margin, or take another pin",
                               wanted.at.pin, place_text(pin->at)));
   if (wanted.shape == study::PortShape::gap) return across_gap(wanted, nets, pin->copper_layer, pin->at);
@@ -109,7 +109,7 @@ Outcome PortPlacer::at_pin(const study::Port& wanted, const Terminals& nets) con
 
 Outcome PortPlacer::at_point(const study::Port& wanted, const Terminals& nets) const {
   const Point p = *wanted.at.point;
-  if (!footprint_.box.contains(p))
+  if (!footprint_.contains(p))
     return failed(fmt::format("{} lies outside the domain, {} to {}; move the port or grow the region", place_text(p),
                               place_text(footprint_.box.min), place_text(footprint_.box.max)));
   std::optional<std::int32_t> layer;
@@ -188,7 +188,7 @@ Outcome PortPlacer::vertical(const study::Port& wanted, const Terminals& nets, s
                              const Section& section) const {
   const Point middle = section.at(0);
   for (const Point p : {section.at(-0.5), section.at(0.5)})
-    if (!footprint_.box.contains(p))
+    if (!footprint_.contains(p))
       return failed(fmt::format("its edge at {} lies outside the domain; move it inside or make it narrower", place_text(p)));
   for (int k = -16; k <= 16; ++k)
     if (!copper_.covers(layer, nets.positive, section.at(k * 0.499 / 16)))
@@ -227,7 +227,7 @@ Ring PortPlacer::triangle_beside(Point a, Point b, const Section& section) const
                     std::llround(section.middle_nm[1] + sign * 0.5 * section.width_nm * section.along[0])};
     Ring ring{a, b, tip};
     geometry::make_counter_clockwise(ring);
-    if (footprint_.box.contains(tip) || sign < 0) return ring;
+    if (footprint_.contains(tip) || sign < 0) return ring;
   }
   return {};
 }

@@ -11,6 +11,16 @@
 
 namespace pcbmesh::compose {
 
+namespace {
+
+/// Whether the study itself says something impossible about a port.
+bool is_at_fault(const study::Study& study, std::size_t port) {
+  const std::string field = fmt::format("/ports/{}/", port);
+  return std::ranges::any_of(study::faults_of(study), [&](const study::Fault& f) { return f.field.starts_with(field); });
+}
+
+}  // namespace
+
 void add_ports(const board::Board& board, const study::Study& study, const std::vector<ResolvedRule>& rules,
                const Footprint& footprint, const Stack& stack, model::ModelParts& parts, std::vector<study::Fault>& faults) {
   if (study.ports.empty()) return;
@@ -19,6 +29,7 @@ void add_ports(const board::Board& board, const study::Study& study, const std::
   for (std::size_t i = 0; i < study.ports.size(); ++i) {
     const study::Port& wanted = study.ports[i];
     if (!board.find_net(wanted.net) || (!wanted.reference.empty() && !board.find_net(wanted.reference))) continue;
+    if (is_at_fault(study, i)) continue;  // told already
     if (wanted.shape == study::PortShape::coaxial) {
       faults.push_back(
           {fmt::format("/ports/{}/shape", i),
@@ -59,18 +70,22 @@ struct Candidate {
   std::string about;
 };
 
-std::vector<Candidate> candidates_of(const board::Board& board, std::int32_t net, const Footprint& footprint, bool with_sides) {
+std::vector<Candidate> candidates_of(const board::Board& board, const study::Study& study, std::int32_t net,
+                                     const Footprint& footprint) {
+  const bool with_sides = study.region != study::RegionKind::nets && study.region != study::RegionKind::polygon;
   std::vector<Candidate> candidates;
   std::vector<std::string> met;
   for (const board::Pin& pin : board.pins()) {
     const std::string name = pin.component + "." + pin.number;
-    if (pin.net != net || !footprint.box.contains(pin.at) || std::ranges::count(met, name) > 0) continue;
+    if (pin.net != net || !footprint.contains(pin.at) || std::ranges::count(met, name) > 0) continue;
     met.push_back(name);
     candidates.push_back({{.pin = name}, fmt::format("pin {}", name)});
   }
   if (!with_sides) return candidates;
   for (const auto side : {study::HullSide::xmin, study::HullSide::xmax, study::HullSide::ymin, study::HullSide::ymax})
-    candidates.push_back({{.side = side}, fmt::format("the cut at {}", study::name_of(side))});
+    if (const auto kind = study.boundaries[static_cast<std::size_t>(side)].kind;
+        kind != study::BoundaryKind::pml && kind != study::BoundaryKind::periodic)
+      candidates.push_back({{.side = side}, fmt::format("the cut at {}", study::name_of(side))});
   return candidates;
 }
 
@@ -93,7 +108,7 @@ std::vector<PortProposal> find_ports(const board::Board& board, const study::Stu
       proposals.push_back({{.name = "", .net = name, .at = {}}, "", "a net with filled areas is a reference, not a line"});
       continue;
     }
-    for (Candidate& candidate : candidates_of(board, net, footprint, study.region != study::RegionKind::nets)) {
+    for (Candidate& candidate : candidates_of(board, study, net, footprint)) {
       PortProposal proposal{{.name = "P", .net = name, .at = std::move(candidate.at)}, candidate.about, ""};
       Outcome outcome = placer.place(proposal.port);
       // A net that ends inside has no cut: that needs no word.

@@ -123,6 +123,12 @@ class StackBuilder {
   }
 
   Stack run() {
+    const study::Boundary& below = study_.boundaries[static_cast<std::size_t>(study::HullSide::zmin)];
+    const study::Boundary& above = study_.boundaries[static_cast<std::size_t>(study::HullSide::zmax)];
+    if (below.kind == study::BoundaryKind::pml) {
+      z_ = -study_.air_below - below.thickness;
+      append_matched("pml below", below);
+    }
     if (study_.air_below > 0) {
       z_ = -study_.air_below;
       append("air below", model::SlabKind::air, study_.air_below, stack_.air);
@@ -145,6 +151,7 @@ class StackBuilder {
                   "solid or hollow",
                   {.file = board_.source()});
     if (study_.air_above > 0) append("air above", model::SlabKind::air, study_.air_above, stack_.air);
+    if (above.kind == study::BoundaryKind::pml) append_matched("pml above", above);
     return std::move(stack_);
   }
 
@@ -156,6 +163,14 @@ class StackBuilder {
   void append(std::string name, model::SlabKind kind, Nm thickness, std::int32_t material) {
     stack_.slabs.push_back({std::move(name), kind, z_, z_ + thickness, material, stack_.outside});
     z_ += thickness;
+  }
+  /// One slab per element asked for: slabs of one name are one layer.
+  void append_matched(const std::string& name, const study::Boundary& boundary) {
+    for (int i = 0; i < boundary.layers; ++i) {
+      const Nm from = boundary.thickness * i / boundary.layers, to = boundary.thickness * (i + 1) / boundary.layers;
+      append(name, model::SlabKind::air, to - from, stack_.air);
+      stack_.slabs.back().is_stretched = true;
+    }
   }
   /// The mask beside kept_[k], on the outer side of the stack.
   [[nodiscard]] const StackupLayer* mask_beside(std::size_t k, bool above) const {

@@ -199,6 +199,7 @@ class BoundaryFinder {
     const bool in_copper = left.net >= 0 || right.net >= 0;
     if (port >= 0 && !in_copper && ports_.has_slab(port, slab)) return tags_.port(port);
     if (is_inner) return -1;
+    if (!model_.outline().empty()) return side_of_outline(edge);
     return box_.side_of(parts_.planar.points_m()[index(edge.a)], parts_.planar.points_m()[index(edge.b)]);
   }
 
@@ -207,6 +208,16 @@ class BoundaryFinder {
   const model::Model& model_;
   const TagSpace& tags_;
   const PortFootprints& ports_;
+  /// Side of a polygonal domain on which an outer edge lies; `side` if none.
+  [[nodiscard]] std::int32_t side_of_outline(const SharedEdge& edge) const {
+    const auto outline = model_.outline();
+    if (edge.right >= 0) return side;
+    for (std::size_t i = 0; i < outline.size(); ++i)
+      if (is_on_segment(parts_.planar.points_m()[index(edge.a)], outline[i], outline[(i + 1) % outline.size()]) &&
+          is_on_segment(parts_.planar.points_m()[index(edge.b)], outline[i], outline[(i + 1) % outline.size()]))
+        return tags_.outline_side(static_cast<std::int32_t>(i));
+    return side;
+  }
   MeshedBox box_;
   model::Label outside_;
 };
@@ -224,6 +235,17 @@ void number_face_tags(mesh::PrismMeshParts& parts, const TagSpace& tags, const m
   }
   for (mesh::Cap& cap : parts.caps) cap.tag = final_tag[index(cap.tag)];
   for (mesh::Wall& wall : parts.walls) wall.tag = final_tag[index(wall.tag)];
+}
+
+/// Opposite sides that are periodic name each other.
+void pair_periodic_sides(std::vector<mesh::FaceTag>& tags) {
+  for (mesh::FaceTag& tag : tags) {
+    if (tag.condition != mesh::BoundaryCondition::periodic) continue;
+    const std::string partner = tag.name.substr(0, 1) + (tag.name.ends_with("min") ? "max" : "min");
+    const auto found = std::ranges::find(tags, partner, &mesh::FaceTag::name);
+    PCBMESH_ASSERT(found != tags.end());
+    tag.partner = static_cast<std::int32_t>(found - tags.begin());
+  }
 }
 
 /// Counts and areas of the face tags.
@@ -246,13 +268,14 @@ void measure_faces(mesh::PrismMeshParts& parts) {
 }  // namespace
 
 void add_boundary(mesh::PrismMeshParts& parts, const Columns& columns, const model::Model& model) {
-  const TagSpace tags(parts.nets.size(), model.ports().size());
+  const TagSpace tags(model);
   const PortFootprints ports(parts.planar, model);
   const std::vector<SharedEdge> edges = region_edges(parts.planar);
   const BoundaryFinder finder(parts, columns, model, tags, ports);
   parts.caps = finder.caps();
   parts.walls = finder.walls(edges);
   number_face_tags(parts, tags, model);
+  pair_periodic_sides(parts.face_tags);
   measure_faces(parts);
   add_ports(parts, columns, model, ports, edges);
   // Caps come by level and triangle: a stable sort by tag keeps that order inside each tag.

@@ -2,7 +2,9 @@
 #include "pcbmesh/extrude/extrude.hpp"
 
 #include <algorithm>
+#include <array>
 #include <map>
+#include <optional>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -43,9 +45,9 @@ void name_materials(std::span<const board::Material> given, std::vector<board::M
 /// Volume tags in use, and the tag of each column cell.
 void add_volume_tags(mesh::PrismMeshParts& parts, const Columns& columns, std::span<const std::int32_t> layer_of_slab) {
   const std::int32_t num_regions = parts.planar.num_regions(), num_slabs = columns.num_slabs();
-  using Key = std::tuple<std::int32_t, std::int32_t, std::int32_t>;  // layer, material, net
+  using Key = std::tuple<std::int32_t, std::int32_t, std::int32_t, std::uint8_t>;  // layer, material, net, stretched axes
   const auto key_of = [&](const model::Label& label, std::int32_t slab) {
-    return Key{layer_of_slab[index(slab)], label.material, label.net};
+    return Key{layer_of_slab[index(slab)], label.material, label.net, label.stretched};
   };
   std::map<Key, std::int32_t> tags;
   for (std::int32_t s = 0; s < num_slabs; ++s) {
@@ -56,10 +58,11 @@ void add_volume_tags(mesh::PrismMeshParts& parts, const Columns& columns, std::s
   for (auto& [key, tag_index] : tags) {
     tag_index = static_cast<std::int32_t>(parts.volume_tags.size());
     mesh::VolumeTag& tag = parts.volume_tags.emplace_back();
-    std::tie(tag.layer, tag.material, tag.net) = key;
+    std::tie(tag.layer, tag.material, tag.net, tag.stretched) = key;
     tag.id = tag_index + 1;
     tag.name = escape_tag_part(parts.layers[index(tag.layer)]) + "|" +
                escape_tag_part(parts.materials[index(tag.material)].name) + "|" + net_part(parts.nets, tag.net);
+    if (tag.stretched != 0) tag.name += "|pml " + mesh::axes_text(tag.stretched);
   }
   parts.column_tags.assign(index(num_regions) * index(num_slabs), -1);
   for (std::int32_t r = 0; r < num_regions; ++r) {
@@ -116,6 +119,20 @@ Columns::Columns(const mesh::PlanarMesh& planar, const model::Model& model)
   }
 }
 
+namespace {
+
+std::optional<mesh::Shell> shell_of(const std::optional<model::Shell>& shell) {
+  if (!shell) return std::nullopt;
+  const auto metres = [](geometry::Point p, Nm z) {
+    return std::array<double, 3>{static_cast<double>(p.x) * metres_per_nm, static_cast<double>(p.y) * metres_per_nm,
+                                 static_cast<double>(z) * metres_per_nm};
+  };
+  return mesh::Shell{metres(shell->inner.min, shell->inner_z[0]), metres(shell->inner.max, shell->inner_z[1]),
+                     metres(shell->outer.min, shell->outer_z[0]), metres(shell->outer.max, shell->outer_z[1]), shell->order};
+}
+
+}  // namespace
+
 mesh::PrismMesh extrude(const mesh::PlanarMesh& planar, const mesh::LayerPlan& plan, const model::Model& model,
                         std::span<const std::int32_t> net_pieces, std::span<const std::array<std::int32_t, 2>> touching_nets) {
   PCBMESH_ASSERT(index(plan.num_slabs()) == model.slabs().size());
@@ -129,6 +146,7 @@ mesh::PrismMesh extrude(const mesh::PlanarMesh& planar, const mesh::LayerPlan& p
   const std::vector<std::int32_t> layer_of_slab = name_layers(model.slabs(), parts.layers);
   name_materials(model.materials(), parts.materials);
   parts.nets.assign(model.nets().begin(), model.nets().end());
+  parts.shell = shell_of(model.shell());
   const Columns columns(planar, model);
   add_volume_tags(parts, columns, layer_of_slab);
   measure_volumes(parts);

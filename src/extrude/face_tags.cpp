@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "src/extrude/face_tags.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 
@@ -27,6 +29,8 @@ mesh::BoundaryCondition condition_of(model::SideKind kind) {
       return mesh::BoundaryCondition::pmc;
     case model::SideKind::impedance:
       return mesh::BoundaryCondition::impedance;
+    case model::SideKind::periodic:
+      return mesh::BoundaryCondition::periodic;
   }
   return mesh::BoundaryCondition::none;
 }
@@ -50,10 +54,11 @@ void set_conductor(mesh::FaceTag& tag, const model::Model& model, bool of_sheets
 
 mesh::FaceTag TagSpace::describe(std::int32_t tag, const model::Model& model) const {
   mesh::FaceTag out;
-  if (tag < num_sides) {
-    const auto side = static_cast<std::size_t>(tag);
-    const model::SideCondition& condition = model.sides()[side_places[side]];
-    out.name = side_names[side];
+  if (tag < outline_side(num_outline_)) {
+    const bool is_of_box = tag < num_sides;
+    const auto side = static_cast<std::size_t>(is_of_box ? tag : tag - num_sides);
+    const model::SideCondition& condition = is_of_box ? model.sides()[side_places[side]] : model.outline_sides()[side];
+    out.name = is_of_box ? side_names[side] : fmt::format("side_{}", side + 1);
     out.condition = condition_of(condition.kind);
     out.impedance_ohm = condition.ohms;
     return out;
@@ -69,7 +74,7 @@ mesh::FaceTag TagSpace::describe(std::int32_t tag, const model::Model& model) co
   const bool of_sheets = tag >= inner_sheet(board::no_net), on_hull = tag >= outer_sheet(board::no_net);
   out.kind = of_sheets ? mesh::FaceTagKind::sheet : mesh::FaceTagKind::conductor;
   out.is_inner = of_sheets && !on_hull;
-  out.net = (tag - num_sides) % num_nets_ - 1;
+  out.net = (tag - surface(board::no_net)) % num_nets_ - 1;
   out.name = (of_sheets ? "sheet|" : "surface|") + net_part(model.nets(), out.net) + (on_hull ? "|outer" : "");
   set_conductor(out, model, of_sheets);
   return out;

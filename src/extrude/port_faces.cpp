@@ -167,9 +167,12 @@ bool PortFootprints::covers(std::int32_t port, std::int32_t region) const {
 
 bool PortFootprints::is_on_line(std::int32_t port, std::int32_t vertex) const {
   const auto& [from, to] = model_.ports()[index(port)].line;
+  return is_on_segment(planar_.points_m()[index(vertex)], from, to);
+}
+
+bool is_on_segment(const std::array<double, 2>& p, geometry::Point from, geometry::Point to) {
   const double ax = static_cast<double>(from.x) * metres_per_nm, ay = static_cast<double>(from.y) * metres_per_nm;
   const double ux = static_cast<double>(to.x - from.x) * metres_per_nm, uy = static_cast<double>(to.y - from.y) * metres_per_nm;
-  const auto& p = planar_.points_m()[index(vertex)];
   const double length = std::hypot(ux, uy), dx = p[0] - ax, dy = p[1] - ay;
   if (length == 0) return false;
   const double along = (dx * ux + dy * uy) / length, across = (dx * uy - dy * ux) / length;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -16,6 +17,9 @@ struct SharedEdge {
   std::int32_t left = 0;
   std::int32_t right = -1;
 };
+
+/// Whether a vertex lies on a segment, as nearly as vertices rounded to the nanometre grid can.
+[[nodiscard]] bool is_on_segment(const std::array<double, 2>& p, geometry::Point from, geometry::Point to);
 
 /// Where ports lie in the plane.
 class PortFootprints {

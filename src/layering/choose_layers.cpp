@@ -154,12 +154,6 @@ std::vector<int> sublayer_counts(std::span<const model::Slab> slabs, SublayerRul
   return counts;
 }
 
-double forecast_sublayers(const study::Study& study, const model::Slab& slab, double common_height_m) {
-  // The best mean may leave layers whole whatever their height.
-  if (study.paper_compat || study.sublayers == SublayerRule::none || study.sublayers == SublayerRule::best_mean) return 1;
-  return std::max(1.0, std::floor(height_m(slab) / common_height_m + ratio_tolerance));
-}
-
 std::vector<int> paper_counts(std::span<const model::Slab> slabs, HeightPolicy policy) {
   std::vector<int> counts(slabs.size(), 1);
   if (policy != HeightPolicy::basic) return counts;

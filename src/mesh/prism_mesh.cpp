@@ -43,6 +43,13 @@ std::string_view name_of(BoundaryCondition condition) {
   return names[static_cast<std::size_t>(condition)];
 }
 
+std::string axes_text(std::uint8_t stretched) {
+  std::string text;
+  for (int axis = 0; axis < 3; ++axis)
+    if (((stretched >> axis) & 1) != 0) text += static_cast<char>('x' + axis);
+  return text;
+}
+
 inline bool PrismMesh::Mask::has(std::int32_t i) const {
   return is_full() || ((words[index(i) / 64] >> (index(i) % 64)) & 1U) != 0;
 }

@@ -28,8 +28,13 @@ Model Model::from_parts(ModelParts parts) {
     PCBMESH_ASSERT(body.material >= -1 && body.material < num_materials && body.net >= board::no_net && body.net < num_nets);
   }
   const std::size_t first_port = parts.bodies.size() - std::min(parts.bodies.size(), parts.ports.size());
-  for (std::size_t i = 0; i < parts.bodies.size(); ++i)
+  std::size_t first_guide = first_port;
+  while (first_guide > 0 && parts.bodies[first_guide - 1].kind == BodyKind::shell) --first_guide;
+  for (std::size_t i = 0; i < parts.bodies.size(); ++i) {
     PCBMESH_ASSERT((parts.bodies[i].kind == BodyKind::port) == (i >= first_port));
+    PCBMESH_ASSERT((parts.bodies[i].kind == BodyKind::shell) == (i >= first_guide && i < first_port));
+  }
+  PCBMESH_ASSERT(parts.outline.size() == parts.outline_sides.size());
   for (const Port& port : parts.ports) {
     PCBMESH_ASSERT(port.body >= 0 && static_cast<std::size_t>(port.body) >= first_port &&
                    static_cast<std::size_t>(port.body) < parts.bodies.size());
@@ -41,6 +46,7 @@ Model Model::from_parts(ModelParts parts) {
     PCBMESH_ASSERT(shape.body >= 0 && static_cast<std::size_t>(shape.body) < parts.bodies.size() && !shape.rings.empty());
   }
   Model model;
+  model.first_guide_ = static_cast<std::int32_t>(first_guide);
   model.parts_ = std::make_shared<const ModelParts>(std::move(parts));
   return model;
 }
@@ -52,19 +58,22 @@ std::string_view Model::net_name(std::int32_t net) const {
 Label Model::resolve(std::int32_t slab, std::span<const std::int32_t> present) const {
   const Slab& here = parts_->slabs[static_cast<std::size_t>(slab)];
   if (present.empty() || present[0] != 0) return {};
-  if (present.size() < 2 || present[1] != 1) return {here.outside, board::no_net, -2};
+  std::uint8_t stretched = here.is_stretched ? stretched_z : 0;
+  for (auto body = present.rbegin(); parts_->shell && body != present.rend() && *body >= first_guide_; ++body)
+    stretched |= parts_->bodies[static_cast<std::size_t>(*body)].stretched;
+  if (present.size() < 2 || present[1] != 1) return {here.outside, board::no_net, -2, stretched};
   const std::int32_t index = top_body(slab, present);
-  if (index < 0) return {here.material, board::no_net, -2};
+  if (index < 0) return {here.material, board::no_net, -2, stretched};
   const Body& top = parts_->bodies[static_cast<std::size_t>(index)];
-  if (top.hollow) return {-1, board::no_net, top.net};
-  return {top.material, top.net, -2};
+  if (top.hollow) return {-1, board::no_net, top.net, stretched};
+  return {top.material, top.net, -2, stretched};
 }
 
 std::int32_t Model::top_body(std::int32_t slab, std::span<const std::int32_t> present) const {
   std::int32_t top = -1, priority = 0;
   for (const std::int32_t index : present) {
     const Body& body = parts_->bodies[static_cast<std::size_t>(index)];
-    if (index < 2 || body.sheet || body.kind == BodyKind::port || slab < body.first_slab || slab > body.last_slab) continue;
+    if (index < 2 || body.sheet || index >= first_guide_ || slab < body.first_slab || slab > body.last_slab) continue;
     if (top < 0 || body.priority > priority) top = index, priority = body.priority;
   }
   return top;
@@ -87,10 +96,6 @@ std::int32_t Model::sheet_at(std::int32_t face, std::span<const std::int32_t> pr
     if (other.kind != BodyKind::filler || other.priority > conductor.priority) return -1;
   }
   return *sheet;
-}
-
-std::int32_t Model::first_port_body() const {
-  return static_cast<std::int32_t>(parts_->bodies.size() - parts_->ports.size());
 }
 
 }  // namespace pcbmesh::model

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <optional>
 
+#include "src/overlay/match_sides.hpp"
+
 namespace pcbmesh::overlay {
 namespace {
 
@@ -225,7 +227,10 @@ class Blunter {
 
 std::int64_t blunt(Noder& noder, const BluntLimits& limits, const Conductors& conductors) {
   if (limits.angle_deg <= 0 || limits.width_nm <= 0) return 0;
-  const std::vector<Wedge> wedges = sharp_wedges(noder, limits.angle_deg);
+  std::vector<Wedge> wedges = sharp_wedges(noder, limits.angle_deg);
+  // What is sharp on one of two periodic sides is obtuse on the other: blunted, they would differ.
+  const PeriodicSides periodic(conductors.model());
+  std::erase_if(wedges, [&](const Wedge& wedge) { return periodic.hold(noder.points()[ix(wedge.vertex)]); });
   return wedges.empty() ? 0 : Blunter(noder, limits, conductors).run(wedges);
 }
 

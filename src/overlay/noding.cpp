@@ -18,13 +18,13 @@ bool share_end(const Edge& a, const Edge& b) {
 
 }  // namespace
 
-Noder::Noder(EdgeGraph graph, LabelPool& labels, Nm tolerance, const Progress& progress, std::int32_t first_port)
+Noder::Noder(EdgeGraph graph, LabelPool& labels, Nm tolerance, const Progress& progress, std::int32_t first_guide)
     : points_(std::move(graph.points)),
       edges_(std::move(graph.edges)),
       fresh_(edges_.size(), 1),
       moved_(points_.size(), tolerance > 0 ? 1 : 0),  // distinct points are an exact cluster each
       labels_(labels),
-      first_port_(first_port),
+      first_guide_(first_guide),
       tolerance_(tolerance),
       tolerance2_(static_cast<double>(tolerance) * static_cast<double>(tolerance)),
       progress_(progress),
@@ -34,7 +34,7 @@ int Noder::stiffness(const Edge& e) const {
   const auto entries = labels_.entries(e.label);
   if (tolerance_ == 0 || entries.empty()) return 0;
   if (entries.front().body == 0) return 3;
-  if (entries.back().body >= first_port_) return 2;
+  if (entries.back().body >= first_guide_) return 2;
   return entries.front().body == 1 ? 1 : 0;
 }
 

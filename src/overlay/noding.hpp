@@ -22,13 +22,13 @@ struct NodingCounts {
 /// become vertices, until nothing changes. Tolerance 0: exact arrangement on the nanometre grid.
 ///
 /// Only places that changed are looked at again: a test of two unchanged items cannot come out differently.
-/// With a tolerance, edges of body 0 (domain), body 1 (board) and of ports are stiff: vertices near them move onto them.
+/// With a tolerance, edges of body 0 (domain), body 1 (board), shells and ports are stiff: vertices near them move onto them.
 class Noder {
  public:
   /// @param graph  distinct points, normalised edges.
-  /// @param first_port  bodies from here on are ports.
+  /// @param first_guide  bodies from here on are of shells and ports.
   Noder(EdgeGraph graph, LabelPool& labels, Nm tolerance, const Progress& progress,
-        std::int32_t first_port = std::numeric_limits<std::int32_t>::max());
+        std::int32_t first_guide = std::numeric_limits<std::int32_t>::max());
 
   /// @throws Error overlay_no_fixpoint (402), cancelled (103).
   void settle();
@@ -38,7 +38,7 @@ class Noder {
   [[nodiscard]] const NodingCounts& counts() const { return counts_; }
   [[nodiscard]] LabelPool& labels() { return labels_; }
   [[nodiscard]] Nm tolerance() const { return tolerance_; }
-  /// 0 = not stiff, 1 = board, 2 = port, 3 = domain.
+  /// 0 = not stiff, 1 = board, 2 = shell or port, 3 = domain.
   [[nodiscard]] int stiffness(const Edge& e) const;
 
   /// Adds a point; settle() looks at it.
@@ -85,7 +85,7 @@ class Noder {
       rank_;  ///< per point: 0 free, else 2 x stiffness of its stiffest edges, less 1 if they run straight through
   std::vector<Move> moves_;
   LabelPool& labels_;
-  std::int32_t first_port_;
+  std::int32_t first_guide_;
   Nm tolerance_ = 0;
   double tolerance2_ = 0;
   const Progress& progress_;

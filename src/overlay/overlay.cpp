@@ -10,6 +10,7 @@
 #include "src/overlay/blunting.hpp"
 #include "src/overlay/collapse.hpp"
 #include "src/overlay/ledger.hpp"
+#include "src/overlay/match_sides.hpp"
 #include "src/overlay/noding.hpp"
 #include "src/overlay/sheets.hpp"
 #include "src/overlay/verify.hpp"
@@ -62,7 +63,7 @@ Cleaned clean(const Sheets& sheets, const OverlayOptions& options, const Attempt
   std::vector<const EdgeGraph*> graphs;
   for (const EdgeGraph& graph : simplified) graphs.push_back(&graph);
   progress.at("snapping", 0);
-  Noder noder(overlaid(graphs, labels), labels, attempt.tolerance_nm, progress, conductors.model().first_port_body());
+  Noder noder(overlaid(graphs, labels), labels, attempt.tolerance_nm, progress, conductors.model().first_guide_body());
   noder.settle();
   const BluntLimits tips{attempt.blunts ? options.blunt_angle_deg : 0, options.blunt_width_over_tolerance * tol,
                          attempt.spared};
@@ -126,9 +127,10 @@ Spot locate(const Mismatch& mismatch, const Sheets& sheets, const Cleaned& clean
   return spot;
 }
 
-mesh::PlanarGraph to_planar_graph(const EdgeGraph& graph, const LabelPool& labels) {
+mesh::PlanarGraph to_planar_graph(const EdgeGraph& graph, const LabelPool& labels, const model::Model& model, Nm tolerance_nm) {
   mesh::PlanarGraphParts parts;
   parts.vertices = graph.points;
+  match_sides(parts.vertices, model, tolerance_nm);
   parts.edges.reserve(graph.edges.size());
   parts.increment_offsets.push_back(0);
   for (const Edge& e : graph.edges) {
@@ -249,7 +251,7 @@ class Attempts {
  private:
   OverlayResult finished(const Cleaned& cleaned, const std::vector<double>& area_mm2, const Attempt& attempt,
                          int num_attempts) const {
-    OverlayResult result{to_planar_graph(cleaned.graph, labels_),
+    OverlayResult result{to_planar_graph(cleaned.graph, labels_, model_, attempt.tolerance_nm),
                          make_ledger(model_, sheets_, cleaned.graph, area_mm2, labels_, attempt.tolerance_nm, progress_),
                          {},
                          expected_.pieces,

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "src/overlay/collapse.hpp"
+#include "src/overlay/match_sides.hpp"
 #include "src/overlay/noding.hpp"
 
 namespace pcbmesh::overlay {
@@ -70,7 +71,7 @@ class Membership {
       : has_domain_(bodies.front() == domain_body),
         sheet_(sheet),
         num_bodies_(static_cast<std::int32_t>(model.bodies().size())),
-        first_port_(model.first_port_body()),
+        first_guide_(model.first_guide_body()),
         raw_(raw),
         labels_(labels) {}
 
@@ -86,10 +87,10 @@ class Membership {
     const bool on_board = in_domain && present_.size() > 1 && present_[1] == board_body;
     increments_.clear();
     for (const std::int32_t body : present_) {
-      const bool kept = body == domain_body   ? has_domain_
-                        : body == board_body  ? has_domain_ && in_domain
-                        : body >= first_port_ ? in_domain
-                                              : on_board;
+      const bool kept = body == domain_body    ? has_domain_
+                        : body == board_body   ? has_domain_ && in_domain
+                        : body >= first_guide_ ? in_domain
+                                               : on_board;
       if (kept) increments_.push_back({body, 1});
     }
     return memo_[ix(state)] = labels_.intern(increments_);
@@ -109,7 +110,7 @@ class Membership {
   }
   bool has_domain_;
   const RawSheet& sheet_;
-  std::int32_t num_bodies_, first_port_;
+  std::int32_t num_bodies_, first_guide_;
   const LabelPool& raw_;
   LabelPool& labels_;
   std::vector<std::int32_t> memo_, present_;
@@ -153,7 +154,7 @@ std::int64_t drop_specks(const EdgeGraph& graph, Faces& faces, LabelPool& labels
     for (std::size_t i = 0; i < state.size(); ++i) {
       const std::int32_t element = parts.first(static_cast<std::int32_t>(f)) + static_cast<std::int32_t>(i);
       const Extent& e = extent[ix(parts.part(element))];
-      const bool speck = state[i].body != domain_body && state[i].body < model.first_port_body() &&
+      const bool speck = state[i].body != domain_body && state[i].body < model.first_guide_body() &&
                          e.twice_area < thinnest_part_nm * e.perimeter;
       changed = changed || speck;
       if (!speck) kept.push_back(state[i]);
@@ -195,14 +196,17 @@ SheetCensus make_sheet(const model::Model& model, const std::vector<std::vector<
   for (std::int32_t& state : faces.state) state = membership.of(state);
   made.num_specks = drop_specks(graph, faces, labels, &diagnostics, model);
   made.census = take_census(graph, faces, labels, conductors);
-  const bool are_ports = bodies.front() >= model.first_port_body();  // their corners stay where they are
+  const bool are_guides = bodies.front() >= model.first_guide_body();  // their corners stay where they are
   std::vector<std::uint8_t> marks(graph.points.size(), 0);
+  const PeriodicSides periodic(model);  // what crosses them does so at the same places
+  for (std::size_t v = 0; v < graph.points.size(); ++v)
+    if (periodic.hold(graph.points[v])) marks[v] = fixed_point;
   std::size_t kept = 0;
   for (std::size_t e = 0; e < graph.edges.size(); ++e) {
     Edge edge = graph.edges[e];
     edge.label = labels.subtract(faces.state[ix(faces.left[e])], faces.state[ix(faces.right[e])]);
     if (edge.label == 0) continue;
-    if (are_ports || membership.differ_in_frame(windings[ix(faces.left[e])], windings[ix(faces.right[e])]))
+    if (are_guides || membership.differ_in_frame(windings[ix(faces.left[e])], windings[ix(faces.right[e])]))
       marks[ix(edge.u)] = marks[ix(edge.v)] = fixed_point;
     graph.edges[kept++] = edge;
   }
@@ -283,12 +287,13 @@ Sheets make_sheets(const model::Model& model, LabelPool& labels, const Conductor
   std::vector<std::vector<std::int32_t>> shapes_of_body(model.bodies().size());
   for (std::size_t s = 0; s < model.shapes().size(); ++s)
     shapes_of_body[ix(model.shapes()[s].body)].push_back(static_cast<std::int32_t>(s));
-  // Slabs, face of a sheet, ports apart: what one key has in common is drawn into one sheet.
+  // Slabs, face of a sheet, guides apart: what one key has in common is drawn into one sheet.
   std::map<std::tuple<std::int32_t, std::int32_t, std::int32_t, bool>, std::vector<std::int32_t>> groups;
   for (std::size_t b = 0; b < model.bodies().size(); ++b) {
     const model::Body& body = model.bodies()[b];
-    groups[{body.first_slab, body.last_slab, body.sheet ? body.sheet->face : -1, body.kind == model::BodyKind::port}].push_back(
-        static_cast<std::int32_t>(b));
+    groups[{body.first_slab, body.last_slab, body.sheet ? body.sheet->face : -1,
+            static_cast<std::int32_t>(b) >= model.first_guide_body()}]
+        .push_back(static_cast<std::int32_t>(b));
   }
   made.exact.components.assign(model.bodies().size(), 0);
   made.exact.pieces.assign(model.nets().size(), 0);

@@ -141,14 +141,21 @@ Forecast measured(const mesh::PrismMesh& mesh) {
   return made;
 }
 
-void require_few_unknowns(const Forecast& forecast, const study::Study& study) {
+void require_within_limits(const Forecast& forecast, const study::Study& study, std::string_view what) {
+  const char* about = forecast.is_exact ? "exactly" : "about";
+  if (forecast.counts.prisms > study.max_prisms)
+    throw Error(
+        ErrorCode::prism_limit,
+        fmt::format("{} would give {} {:.3g} prisms, above the budget of {:.3g}; mesh a region (--nets, --region), take "
+                    "a longer edge or another height policy, or raise --max-prisms",
+                    what, about, static_cast<double>(forecast.counts.prisms), static_cast<double>(study.max_prisms)));
   const std::optional<std::int64_t> most = study.fabrication.max_unknowns;
   const std::int64_t total = forecast.on_prisms.front().total;
   if (!most || total <= *most) return;
   throw Error(ErrorCode::prism_limit,
-              fmt::format("{} prisms would give {} {} unknowns of first-order edge elements, above the limit of {}; mesh a "
+              fmt::format("{}: {} prisms would give {} {} unknowns of first-order edge elements, above the limit of {}; mesh a "
                           "region (--nets, --region), take a longer edge or another height policy, or raise --max-unknowns",
-                          forecast.counts.prisms, forecast.is_exact ? "exactly" : "about", total, *most));
+                          what, forecast.counts.prisms, about, total, *most));
 }
 
 }  // namespace pcbmesh::pipeline

@@ -20,8 +20,6 @@ namespace {
 constexpr double speed_of_light_m_per_s = 299'792'458.0;
 /// Longest edge where the study names neither a length nor a frequency: the paper's 2 mm.
 constexpr Nm default_longest_edge_nm = 2 * nm_per_mm;
-/// Area of a triangle where the bound on edges, not the features, decides, over the square of the bound.
-constexpr double area_over_edge_squared = layering::TriangleShape{}.area;
 
 double cpu_seconds() {
   timespec now{};
@@ -58,28 +56,9 @@ Nm longest_edge_nm(const study::Study& study, const model::Model& model) {
   return edge.value_or(default_longest_edge_nm);
 }
 
-double area_m2(const mesh::PlanarMesh& mesh) {
-  double sum = 0;
-  for (std::int32_t t = 0; t < mesh.num_triangles(); ++t) sum += mesh.area_m2(t);
-  return sum;
-}
-
-void require_budget(double prisms, const study::Study& study, std::string_view what) {
-  if (prisms <= static_cast<double>(study.max_prisms)) return;
-  throw Error(ErrorCode::prism_limit, fmt::format("{} would give about {:.3g} prisms, above the budget of {:.3g}; mesh a "
-                                                  "region (--nets, --region), take a longer edge or "
-                                                  "another height policy, or raise --max-prisms",
-                                                  what, prisms, static_cast<double>(study.max_prisms)));
-}
-
-std::int64_t num_prisms(const mesh::PlanarMesh& planar, const mesh::LayerPlan& plan) {
-  return static_cast<std::int64_t>(planar.num_triangles()) * plan.num_sublayers();
-}
-
 }  // namespace
 
 MeshBoardResult mesh_board(const board::Board& board, const study::Study& given, const Progress& progress) {
-  study::check(given);
   study::Study study = given;
   study.frequency_hz = study::highest_frequency_hz(given);
   Diagnostics diagnostics;
@@ -136,20 +115,14 @@ MeshBoardResult mesh_board(const board::Board& board, const study::Study& given,
     match = std::move(matched.result);
     heights = layering::height_statistics(planar.mesh);
     expected = forecast(planar.mesh, std::nullopt, std::nullopt, counts, model, study);
-    require_few_unknowns(expected, study);
   } else {
     // The paper's feedback: the common height of the first mesh becomes the longest edge of the second.
     if (height_m) feedback_m = layering::feedback_edge_m(study.policy, *height_m, options.longest_edge_nm * metres_per_nm);
     expected = forecast(planar.mesh, feedback_m, height_m, {}, model, study);
-    require_few_unknowns(expected, study);
+    require_within_limits(expected, study,
+                          fmt::format("height policy '{}' with edges of {:.4g} um", study::name_of(study.policy),
+                                      feedback_m.value_or(options.longest_edge_nm * metres_per_nm) * 1e6));
     if (feedback_m) {
-      const double triangles = area_m2(planar.mesh) / (area_over_edge_squared * *feedback_m * *feedback_m);
-      // The sub-layers of the final mesh are not known yet; by the common height they are not far off.
-      double sublayers = 0;
-      for (const model::Slab& slab : model.slabs()) sublayers += layering::forecast_sublayers(study, slab, *height_m);
-      require_budget(
-          triangles * sublayers, study,
-          fmt::format("height policy '{}' with edges of {:.4g} um", study::name_of(study.policy), *feedback_m * 1e6));
       options.longest_edge_nm = *feedback_m / metres_per_nm;
       planar = timed("triangulate again",
                      [&] { return triangulate::triangulate(graph.graph, model, options, diagnostics, progress); });
@@ -161,13 +134,13 @@ MeshBoardResult mesh_board(const board::Board& board, const study::Study& given,
 
   progress.at("choose layers", 0);
   layering::DividedLayers layers = layering::divide_layers(model.slabs(), counts, limits, study.height_bounds.height_growth);
-  require_budget(static_cast<double>(num_prisms(planar.mesh, layers.plan)), study,
-                 fmt::format("{} triangles in {} sub-layers", planar.mesh.num_triangles(), layers.plan.num_sublayers()));
+  require_within_limits(forecast(planar.mesh, std::nullopt, std::nullopt, counts, model, study), study,
+                        fmt::format("{} triangles in {} sub-layers", planar.mesh.num_triangles(), layers.plan.num_sublayers()));
 
   progress.at("extrude", 0);
   mesh::PrismMesh prisms = timed(
       "extrude", [&] { return extrude::extrude(planar.mesh, layers.plan, model, graph.net_pieces, graph.touching_nets); });
-  if (study.fabrication.max_unknowns) require_few_unknowns(measured(prisms), study);
+  if (study.fabrication.max_unknowns) require_within_limits(measured(prisms), study, "the finished mesh");
   progress.at("quality", 0);
   const layering::QualityStatistics quality = timed("quality", [&] { return layering::quality_statistics(prisms); });
 

@@ -22,8 +22,8 @@ struct Choice {
   std::string_view name;
 };
 
-inline constexpr std::array<Choice<RegionKind>, 3> region_names{
-    {{RegionKind::whole, "whole"}, {RegionKind::nets, "nets"}, {RegionKind::box, "box"}}};
+inline constexpr std::array<Choice<RegionKind>, 4> region_names{
+    {{RegionKind::whole, "whole"}, {RegionKind::nets, "nets"}, {RegionKind::box, "box"}, {RegionKind::polygon, "polygon"}}};
 inline constexpr std::array<Choice<ConductorMode>, 3> conductor_names{
     {{ConductorMode::solid, "solid"}, {ConductorMode::hollow, "hollow"}, {ConductorMode::sheet, "sheet"}}};
 inline constexpr std::array<Choice<ConductorSurface>, 2> surface_names{
@@ -72,13 +72,14 @@ inline constexpr std::array<Choice<HullSide>, num_hull_sides> hull_side_names{{{
                                                                                {HullSide::zmin, "zmin"},
                                                                                {HullSide::zmax, "zmax"},
                                                                                {HullSide::side, "side"}}};
-inline constexpr std::array<Choice<BoundaryKind>, 7> boundary_names{{{BoundaryKind::automatic, "automatic"},
+inline constexpr std::array<Choice<BoundaryKind>, 8> boundary_names{{{BoundaryKind::automatic, "automatic"},
                                                                      {BoundaryKind::none, "none"},
                                                                      {BoundaryKind::absorbing, "absorbing"},
                                                                      {BoundaryKind::pec, "pec"},
                                                                      {BoundaryKind::pmc, "pmc"},
                                                                      {BoundaryKind::impedance, "impedance"},
-                                                                     {BoundaryKind::periodic, "periodic"}}};
+                                                                     {BoundaryKind::periodic, "periodic"},
+                                                                     {BoundaryKind::pml, "pml"}}};
 
 template <typename Value, std::size_t N>
 [[nodiscard]] std::string_view name_in(const std::array<Choice<Value>, N>& choices, Value value) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "pcbmesh/study/solver_needs.hpp"
 #include "src/study/choices.hpp"
@@ -81,17 +82,117 @@ void check_sweep(const Sweep& sweep, FaultList& faults) {
                                         sweep.from_hz));
 }
 
+void check_boundary(const std::string& field, const Boundary& boundary, FaultList& faults) {
+  if (boundary.kind == BoundaryKind::impedance && !(boundary.ohms > 0 && boundary.ohms <= 1e9))
+    faults.add(field, fmt::format("a surface impedance of {} ohms is out of range; expected above 0", boundary.ohms));
+}
+
+/// Only the upright sides of a box have partners: bottom and top of a board differ.
+void check_periodic(const Study& study, HullSide side, const std::string& field, FaultList& faults) {
+  if (side > HullSide::ymax) {
+    faults.add(field, fmt::format("{} can't be periodic; xmin with xmax and ymin with ymax can", name_of(side)));
+    return;
+  }
+  if (study.boundaries[static_cast<std::size_t>(opposite(side))].kind != BoundaryKind::periodic)
+    faults.add(field, fmt::format("a periodic side needs its partner: make {} periodic too", name_of(opposite(side))));
+  if (study.paper_compat) faults.add(field, "the paper knows no periodic sides; leave paper_compat out");
+}
+
+void check_matched_layers(const Study& study, HullSide side, const std::string& field, FaultList& faults) {
+  const Boundary& boundary = study.boundaries[static_cast<std::size_t>(side)];
+  faults.require_length(field + "/thickness", boundary.thickness, nm_per_um, max_coordinate_nm);
+  if (boundary.layers < 1 || boundary.layers > 50)
+    faults.add(field + "/layers", fmt::format("{} is out of range; expected 1 to 50", boundary.layers));
+  if (boundary.order < 1 || boundary.order > 4)
+    faults.add(field + "/order", fmt::format("{} is out of range; expected 1 to 4", boundary.order));
+  for (const Boundary& other : study.boundaries)
+    if (other.kind == BoundaryKind::pml && other.order != boundary.order) {
+      faults.add(field + "/order",
+                 fmt::format("{} here and {} on another side; take one order for all", boundary.order, other.order));
+      break;
+    }
+  if (boundary.backing != BoundaryKind::pec && boundary.backing != BoundaryKind::pmc &&
+      boundary.backing != BoundaryKind::absorbing && boundary.backing != BoundaryKind::none)
+    faults.add(field + "/backing", fmt::format("{} can't be behind matched layers; expected pec, pmc, absorbing or none",
+                                               name_of(boundary.backing)));
+  if (side == HullSide::side)
+    faults.add(field, "walls of cut-outs and polygons can't have matched layers; take absorbing there");
+  if (study.region == RegionKind::polygon && side <= HullSide::ymax)
+    faults.add(field, "a polygonal region has matched layers above and below only; take a box, or absorbing sides");
+  for (const auto& [z_side, air, name] :
+       {std::tuple{HullSide::zmin, study.air_below, "below"}, std::tuple{HullSide::zmax, study.air_above, "above"}})
+    if (side == z_side && air == 0)
+      faults.add(field, fmt::format("matched layers lie outside the air, and there is none; give some in /air/{}", name));
+  if (study.region == RegionKind::whole && side <= HullSide::ymax && study.air_around == 0)
+    faults.add(field, "matched layers lie outside the air, and there is none beside the board; give some in /air/around");
+  if (study.paper_compat) faults.add(field, "the paper knows no matched layers; leave paper_compat out");
+}
+
+void check_polygon_boundaries(const Study& study, FaultList& faults) {
+  const std::size_t num_sides = study.region == RegionKind::polygon ? study.polygon.size() : 0;
+  for (std::size_t i = 0; i < study.polygon_boundaries.size(); ++i) {
+    const Boundary& boundary = study.polygon_boundaries[i];
+    const std::string field = fmt::format("/boundaries/side_{}", i + 1);
+    if (i >= num_sides && boundary.kind != BoundaryKind::automatic)
+      faults.add(field, num_sides == 0
+                            ? std::string("sides with numbers are those of a polygonal region; name xmin, xmax, ymin or ymax")
+                            : fmt::format("the polygon has sides side_1 to side_{}", num_sides));
+    check_boundary(field, boundary, faults);
+    if (boundary.kind == BoundaryKind::periodic || boundary.kind == BoundaryKind::pml)
+      faults.add(field, fmt::format("a side of a polygon can't be {}; take absorbing, pec, pmc or impedance, or a box region",
+                                    name_of(boundary.kind)));
+  }
+  if (num_sides == 0) return;
+  for (const HullSide side : {HullSide::xmin, HullSide::xmax, HullSide::ymin, HullSide::ymax}) {
+    const Boundary& boundary = study.boundaries[static_cast<std::size_t>(side)];
+    if (boundary.kind == BoundaryKind::automatic || boundary == study.boundaries[static_cast<std::size_t>(HullSide::side)])
+      continue;
+    faults.add(fmt::format("/boundaries/{}", name_of(side)),
+               fmt::format("a polygonal region has no side {}; name side_1 to side_{}, or side for all of them", name_of(side),
+                           num_sides));
+  }
+  for (std::size_t p = 0; p < study.ports.size(); ++p)
+    if (study.ports[p].at.side)
+      faults.add(fmt::format("/ports/{}/at/side", p),
+                 fmt::format("port '{}' can't be on {}: the region is a polygon; put it on a pin or a point, or take a box",
+                             study.ports[p].name, name_of(*study.ports[p].at.side)));
+}
+
 void check_boundaries(const Study& study, FaultList& faults) {
   for (std::size_t i = 0; i < num_hull_sides; ++i) {
     const Boundary& boundary = study.boundaries[i];
     const auto side = static_cast<HullSide>(i);
     const std::string field = fmt::format("/boundaries/{}", name_of(side));
-    if (boundary.kind == BoundaryKind::impedance && !(boundary.ohms > 0 && boundary.ohms <= 1e9))
-      faults.add(field, fmt::format("a surface impedance of {} ohms is out of range; expected above 0", boundary.ohms));
-    if (boundary.kind == BoundaryKind::periodic)
-      faults.add(field,
-                 "periodic sides are not built: the triangles of two sides do not match; take pmc or pec on both, "
-                 "or a larger region with absorbing sides");
+    check_boundary(field, boundary, faults);
+    if (boundary.kind == BoundaryKind::periodic) check_periodic(study, side, field, faults);
+    if (boundary.kind == BoundaryKind::pml) check_matched_layers(study, side, field, faults);
+    if (boundary.kind == BoundaryKind::periodic || boundary.kind == BoundaryKind::pml)
+      for (std::size_t p = 0; p < study.ports.size(); ++p)
+        if (study.ports[p].at.side == side)
+          faults.add(fmt::format("/ports/{}/at/side", p),
+                     fmt::format("port '{}' can't be on {}, which is {}; move it inside, or take another boundary there",
+                                 study.ports[p].name, name_of(side), name_of(boundary.kind)));
+  }
+  check_polygon_boundaries(study, faults);
+}
+
+/// Conditions that the mesh has, but no deck can say yet.
+void check_deck_boundaries(const Study& study, FaultList& faults) {
+  for (std::size_t i = 0; i < num_hull_sides; ++i) {
+    const BoundaryKind kind = study.boundaries[i].kind;
+    if (kind != BoundaryKind::pml && kind != BoundaryKind::periodic) continue;
+    // GetDP's deck stretches coordinates at a frequency and links edges; the other decks have neither.
+    const bool is_getdp = study.solver == Solver::getdp;
+    if (is_getdp &&
+        (study.problem == Problem::driven || (study.problem == Problem::eigenmode && kind == BoundaryKind::periodic)))
+      continue;
+    faults.add(
+        fmt::format("/boundaries/{}", name_of(static_cast<HullSide>(i))),
+        fmt::format("the deck of {} has no {} in a {} problem; the nearest it can do is {}. Without a solver the mesh is "
+                    "written with all its tags",
+                    name_of(study.solver), kind == BoundaryKind::pml ? "perfectly matched layers" : "periodic sides",
+                    name_of(study.problem),
+                    kind == BoundaryKind::pml ? "absorbing" : "pec or pmc on both sides, which are symmetry planes"));
   }
 }
 
@@ -112,6 +213,7 @@ void check_solver(const Study& study, FaultList& faults) {
   if (study.order == 2 && study.solver != Solver::palace)
     faults.add("/output/order",
                fmt::format("the deck of {} reads elements of first order; take order 1, or palace", name_of(study.solver)));
+  check_deck_boundaries(study, faults);
   if (study.solver == Solver::palace) return;
   for (std::size_t i = 0; i < study.ports.size() && study.problem == Problem::driven; ++i)
     if (study.ports[i].kind == PortKind::wave)

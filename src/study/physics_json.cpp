@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
 #include <utility>
+#include <vector>
 
 #include "src/study/json_fields.hpp"
 
@@ -40,20 +45,53 @@ Boundary read_boundary(const JsonValue& field) {
     boundary.kind = parsed(field, [&] { return parse_boundary_kind(field.as_string()); });
     if (boundary.kind == BoundaryKind::impedance)
       field.fail("an impedance needs its ohms: {\"kind\": \"impedance\", \"ohms\": 377}");
+    if (boundary.kind == BoundaryKind::pml)
+      field.fail("perfectly matched layers need their thickness: {\"kind\": \"pml\", \"thickness\": \"3mm\"}");
     return boundary;
   }
-  field.allow_only({"kind", "ohms"});
+  field.allow_only({"kind", "ohms", "thickness", "layers", "order", "backing"});
   (void)field.at("kind");
   read_choice(field, "kind", boundary_names, boundary.kind);
   if (const auto ohms = field.find("ohms")) boundary.ohms = ohms->as_number();
+  const bool is_pml = boundary.kind == BoundaryKind::pml;
+  for (const char* name : {"thickness", "layers", "order", "backing"})
+    if (const auto other = field.find(name); other && !is_pml)
+      other->fail("belongs to perfectly matched layers; take kind pml, or leave this out");
+  if (!is_pml) return boundary;
+  boundary.thickness = field.at("thickness").as_length(study_unit_mm);
+  const auto count = [&](std::string_view name, int& into) {
+    if (const auto number = field.find(name)) into = static_cast<int>(std::clamp<std::int64_t>(number->as_integer(), -1, 1000));
+  };
+  count("layers", boundary.layers);
+  count("order", boundary.order);
+  read_choice(field, "backing", boundary_names, boundary.backing);
   return boundary;
 }
 
+/// Number of the polygon's side that the name "side_3" means, from 1; 0 = none.
+std::size_t polygon_side(std::string_view name) {
+  constexpr std::string_view start = "side_";
+  std::size_t number = 0;
+  if (!name.starts_with(start)) return 0;
+  const auto digits = name.substr(start.size());
+  const auto [end, fault] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  constexpr std::size_t most_sides = 10'000;
+  return fault == std::errc() && end == digits.data() + digits.size() && number <= most_sides ? number : 0;
+}
+
 void read_boundaries(const JsonValue& object, Study& study) {
-  object.allow_only({"all", "xmin", "xmax", "ymin", "ymax", "zmin", "zmax", "side"});
+  std::vector<std::string_view> names{"all", "xmin", "xmax", "ymin", "ymax", "zmin", "zmax", "side"};
+  for (const JsonValue member : object)
+    if (polygon_side(member.key()) > 0) names.push_back(member.key());
+  object.allow_only(names);
   if (const auto field = object.find("all")) study.boundaries.fill(read_boundary(*field));
   for (std::size_t i = 0; i < num_hull_sides; ++i)
     if (const auto field = object.find(hull_side_names[i].name)) study.boundaries[i] = read_boundary(*field);
+  for (const JsonValue member : object)
+    if (const std::size_t number = polygon_side(member.key()); number > 0) {
+      study.polygon_boundaries.resize(std::max(study.polygon_boundaries.size(), number));
+      study.polygon_boundaries[number - 1] = read_boundary(member);
+    }
 }
 
 Sweep read_sweep(const JsonValue& object) {
@@ -74,6 +112,12 @@ Sweep read_sweep(const JsonValue& object) {
 
 Json boundary_json(const Boundary& boundary) {
   if (boundary.kind == BoundaryKind::impedance) return {{"kind", name_of(boundary.kind)}, {"ohms", boundary.ohms}};
+  if (boundary.kind == BoundaryKind::pml)
+    return {{"kind", name_of(boundary.kind)},
+            {"thickness", exact_length(boundary.thickness)},
+            {"layers", boundary.layers},
+            {"order", boundary.order},
+            {"backing", name_of(boundary.backing)}};
   return name_of(boundary.kind);
 }
 
@@ -141,6 +185,8 @@ void write_physics(const Study& study, const StudyWords& words, Json& root) {
   Json& boundaries = root["boundaries"];
   for (std::size_t i = 0; i < num_hull_sides; ++i)
     boundaries[std::string(hull_side_names[i].name)] = boundary_json(study.boundaries[i]);
+  for (std::size_t i = 0; i < study.polygon_boundaries.size(); ++i)
+    boundaries[fmt::format("side_{}", i + 1)] = boundary_json(study.polygon_boundaries[i]);
   root["sweep"] = nullptr;
   if (study.sweep && !study.sweep->list_hz.empty()) root["sweep"] = Json{{"list", study.sweep->list_hz}};
   if (study.sweep && study.sweep->list_hz.empty())

@@ -13,6 +13,67 @@
 namespace pcbmesh::study {
 namespace {
 
+/// Place of an exact point, as the program prints coordinates.
+std::string place_text(geometry::Point p) {
+  return fmt::format("({:.6g}, {:.6g}) mm", static_cast<double>(p.x) * 1e-6, static_cast<double>(p.y) * 1e-6);
+}
+
+/// Where two segments cross in their interiors, rounded to the grid.
+std::optional<geometry::Point> crossing(geometry::Point a, geometry::Point b, geometry::Point c, geometry::Point d) {
+  const auto turn = [](geometry::Point p, geometry::Point q, geometry::Point r) { return geometry::orientation(p, q, r); };
+  if (turn(a, b, c) * turn(a, b, d) >= 0 || turn(c, d, a) * turn(c, d, b) >= 0) return std::nullopt;
+  const auto cross = [](geometry::Point o, geometry::Point p, geometry::Point q) {
+    return static_cast<double>(p.x - o.x) * static_cast<double>(q.y - o.y) -
+           static_cast<double>(p.y - o.y) * static_cast<double>(q.x - o.x);
+  };
+  const double t = cross(c, d, a) / (cross(c, d, a) - cross(c, d, b));
+  return geometry::Point{a.x + std::llround(t * static_cast<double>(b.x - a.x)),
+                         a.y + std::llround(t * static_cast<double>(b.y - a.y))};
+}
+
+void check_polygon(const Study& study, FaultList& faults) {
+  const geometry::Ring& ring = study.polygon;
+  if (study.region == RegionKind::polygon && ring.empty())
+    faults.add("/region/polygon", "a region by polygon needs its corners, [[x, y], ...]");
+  if (ring.empty()) return;
+  if (ring.size() < 3) {
+    faults.add("/region/polygon", fmt::format("a polygon of {} corners encloses nothing; give at least three", ring.size()));
+    return;
+  }
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const std::string field = fmt::format("/region/polygon/{}", i);
+    for (const Nm value : {ring[i].x, ring[i].y}) faults.require_length(field, value, -max_coordinate_nm, max_coordinate_nm);
+    for (std::size_t j = 0; j < i; ++j)
+      if (ring[j] == ring[i]) {
+        faults.add(field,
+                   fmt::format("corner {} lies at {} as corner {} does; leave one out", i + 1, place_text(ring[i]), j + 1));
+        return;
+      }
+  }
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const geometry::Point a = ring[i], b = ring[(i + 1) % ring.size()];
+    for (std::size_t j = 0; j < ring.size(); ++j) {
+      if (j == i || j == (i + 1) % ring.size() || geometry::orientation(a, b, ring[j]) != 0) continue;
+      geometry::Box box;
+      box.add(a), box.add(b);
+      if (!box.contains(ring[j])) continue;
+      faults.add(fmt::format("/region/polygon/{}", j),
+                 fmt::format("the polygon touches itself at its corner {}, which lies on side {}; move it", place_text(ring[j]),
+                             i + 1));
+      return;
+    }
+  }
+  for (std::size_t i = 0; i < ring.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (const auto at = crossing(ring[i], ring[(i + 1) % ring.size()], ring[j], ring[j + 1])) {
+        faults.add("/region/polygon",
+                   fmt::format("the polygon crosses itself near {}, side {} over side {}; order its corners along "
+                               "the outline",
+                               place_text(*at), j + 1, i + 1));
+        return;
+      }
+}
+
 void check_region(const Study& study, FaultList& faults) {
   if (study.region == RegionKind::nets && study.nets.empty())
     faults.add("/region/nets", "a region by nets needs at least one net name");
@@ -24,6 +85,7 @@ void check_region(const Study& study, FaultList& faults) {
       faults.add("/region/nets", fmt::format("net '{}' is named twice", study.nets[i]));
   faults.require_length("/region/margin", study.margin, 0, max_coordinate_nm);
   if (study.region == RegionKind::box && !study.box) faults.add("/region/box", "a region by box needs the box");
+  check_polygon(study, faults);
   if (!study.box) return;
   const geometry::Box& box = *study.box;
   if (box.max.x <= box.min.x || box.max.y <= box.min.y)
@@ -142,16 +204,17 @@ ConductorMode parse_conductor_mode(std::string_view text) {
 bool Study::operator==(const Study& other) const {
   const auto same_box = [](const geometry::Box& a, const geometry::Box& b) { return a.min == b.min && a.max == b.max; };
   return region == other.region && nets == other.nets && margin == other.margin && box.has_value() == other.box.has_value() &&
-         (!box || same_box(*box, *other.box)) && conductors == other.conductors && conductor_rules == other.conductor_rules &&
-         air_above == other.air_above && air_below == other.air_below && air_around == other.air_around &&
-         frequency_hz == other.frequency_hz && longest_edge == other.longest_edge && min_angle_deg == other.min_angle_deg &&
-         edge_at_copper == other.edge_at_copper && growth == other.growth && seed == other.seed && smooth == other.smooth &&
-         policy == other.policy && sublayers == other.sublayers && height_bounds == other.height_bounds &&
-         match == other.match && paper_compat == other.paper_compat && tolerance == other.tolerance &&
-         arcs.sagitta_nm == other.arcs.sagitta_nm && arcs.mode == other.arcs.mode && unit == other.unit &&
-         split == other.split && order == other.order && wedge_nodes == other.wedge_nodes && max_prisms == other.max_prisms &&
-         conductor_surface == other.conductor_surface && problem == other.problem && solver == other.solver &&
-         ports == other.ports && boundaries == other.boundaries && sweep == other.sweep && modes == other.modes &&
+         (!box || same_box(*box, *other.box)) && polygon == other.polygon && conductors == other.conductors &&
+         conductor_rules == other.conductor_rules && air_above == other.air_above && air_below == other.air_below &&
+         air_around == other.air_around && frequency_hz == other.frequency_hz && longest_edge == other.longest_edge &&
+         min_angle_deg == other.min_angle_deg && edge_at_copper == other.edge_at_copper && growth == other.growth &&
+         seed == other.seed && smooth == other.smooth && policy == other.policy && sublayers == other.sublayers &&
+         height_bounds == other.height_bounds && match == other.match && paper_compat == other.paper_compat &&
+         tolerance == other.tolerance && arcs.sagitta_nm == other.arcs.sagitta_nm && arcs.mode == other.arcs.mode &&
+         unit == other.unit && split == other.split && order == other.order && wedge_nodes == other.wedge_nodes &&
+         max_prisms == other.max_prisms && conductor_surface == other.conductor_surface && problem == other.problem &&
+         solver == other.solver && ports == other.ports && boundaries == other.boundaries &&
+         polygon_boundaries == other.polygon_boundaries && sweep == other.sweep && modes == other.modes &&
          fabrication == other.fabrication;
 }
 
@@ -166,6 +229,20 @@ std::array<Boundary, num_hull_sides> resolved_boundaries(const Study& study) {
     if (boundaries[i].kind == BoundaryKind::automatic)
       boundaries[i].kind = has_lumped_port(i) ? BoundaryKind::none : BoundaryKind::absorbing;
   return boundaries;
+}
+
+std::vector<Boundary> resolved_polygon_boundaries(const Study& study) {
+  if (study.region != RegionKind::polygon) return {};
+  std::vector<Boundary> boundaries = study.polygon_boundaries;
+  boundaries.resize(study.polygon.size());
+  const Boundary otherwise = resolved_boundaries(study)[static_cast<std::size_t>(HullSide::side)];
+  for (Boundary& boundary : boundaries)
+    if (boundary.kind == BoundaryKind::automatic) boundary = otherwise;
+  return boundaries;
+}
+
+HullSide opposite(HullSide side) {
+  return static_cast<HullSide>(static_cast<int>(side) ^ 1);
 }
 
 std::optional<double> highest_frequency_hz(const Study& study) {
@@ -191,7 +268,8 @@ std::vector<Fault> faults_of(const Study& study) {
 
 std::string text_of(const std::vector<Fault>& faults) {
   std::string text;
-  for (const Fault& fault : faults) text += fmt::format("{}{}: {}", text.empty() ? "" : "\n  ", fault.field, fault.text);
+  for (const Fault& fault : faults)
+    text += fmt::format("{}{}{}{}", text.empty() ? "" : "\n  ", fault.field, fault.field.empty() ? "" : ": ", fault.text);
   return text;
 }
 

@@ -20,18 +20,22 @@ namespace {
 // ---- JSON -> Study -----------------------------------------------------------------------------------------------
 
 void read_region(const JsonValue& object, Study& study) {
-  object.allow_only({"kind", "nets", "margin", "box"});
+  object.allow_only({"kind", "nets", "margin", "box", "polygon"});
   if (const auto nets = object.find("nets"))
     for (JsonValue net : nets->as_array()) study.nets.emplace_back(net.as_string());
   if (const auto box = object.find_set("box")) {
     box->allow_only({"min", "max"});
     study.box = geometry::Box{read_corner(box->at("min")), read_corner(box->at("max"))};
   }
+  if (const auto polygon = object.find_set("polygon"))
+    for (const JsonValue point : polygon->as_array()) study.polygon.push_back(read_corner(point));
   read_length(object, "margin", study.margin);
-  // Without a kind, what is given tells: a box bounds the domain, and nets named beside it are the nets of interest in it.
+  // Without a kind, what is given tells: a box or polygon bounds the domain, and nets named beside it are the nets of interest
+  // in it.
   if (!object.find("kind")) {
     if (!study.nets.empty()) study.region = RegionKind::nets;
     if (study.box) study.region = RegionKind::box;
+    if (!study.polygon.empty()) study.region = RegionKind::polygon;
   }
   read_choice(object, "kind", region_names, study.region);
 }
@@ -173,9 +177,9 @@ Json corner(geometry::Point p) {
 
 // --------------------------------------------------------------------------------------------------------------------
 
-Study parse_study(std::string_view json, std::string_view file_name) {
-  const JsonDocument document = JsonDocument::parse(json, file_name, ErrorCode::study_invalid);
-  const JsonValue root = document.root();
+namespace {
+
+Study study_of(const JsonValue& root, std::string_view file_name) {
   root.allow_only({"$schema", "schema_version", "note",       "region", "conductors",  "air",        "mesh",     "arcs",
                    "output",  "limits",         "problem",    "solver", "ports",       "boundaries", "sweep",    "modes",
                    "vias",    "backdrill",      "merge_vias", "etch",   "solder_mask", "fill",       "materials"});
@@ -206,6 +210,15 @@ Study parse_study(std::string_view json, std::string_view file_name) {
   const auto output = root.find("output");
   if (needs_tetrahedra(study) && !(output && output->find("split"))) study.split = ElementSplit::tetrahedra;
   read_fabrication(root, std::filesystem::path(file_name).parent_path(), study.fabrication);
+  return study;
+}
+
+}  // namespace
+
+Study parse_study(std::string_view json, std::string_view file_name) {
+  const JsonDocument document = JsonDocument::parse(json, file_name, ErrorCode::study_invalid);
+  const JsonValue root = document.root();
+  Study study = study_of(root, file_name);
   try {
     check(study);
   } catch (const Error& error) {
@@ -216,6 +229,29 @@ Study parse_study(std::string_view json, std::string_view file_name) {
 
 Study read_study(const std::filesystem::path& file) {
   return parse_study(formats::syntax::read_whole_file(file), file.string());
+}
+
+Study read_unchecked_study(const std::filesystem::path& file) {
+  const std::string text = formats::syntax::read_whole_file(file);
+  const JsonDocument document = JsonDocument::parse(text, file.string(), ErrorCode::study_invalid);
+  return study_of(document.root(), file.string());
+}
+
+std::string with_lines(std::string_view faults, const std::filesystem::path& file) {
+  const std::string text = formats::syntax::read_whole_file(file);
+  const JsonDocument document = JsonDocument::parse(text, file.string(), ErrorCode::study_invalid);
+  std::string out;
+  while (!faults.empty()) {
+    const std::string_view one = faults.substr(0, faults.find('\n'));
+    faults.remove_prefix(std::min(faults.size(), one.size() + 1));
+    const std::size_t start = one.find_first_not_of(' '), colon = one.find(':');
+    if (start != std::string_view::npos && one[start] == '/' && colon != std::string_view::npos)
+      out += fmt::format("{} ({}:{})", one, file.filename().string(), spot_of(document.root(), one.substr(start)).line);
+    else
+      out += one;
+    if (!faults.empty()) out += '\n';
+  }
+  return out;
 }
 
 std::string to_json(const Study& study) {
@@ -233,6 +269,11 @@ std::string to_json(const Study& study, const StudyWords& words) {
   region["margin"] = exact_length(study.margin);
   region["box"] = nullptr;
   if (study.box) region["box"] = Json{{"min", corner(study.box->min)}, {"max", corner(study.box->max)}};
+  region["polygon"] = nullptr;
+  if (!study.polygon.empty()) {
+    region["polygon"] = Json::array();
+    for (const geometry::Point p : study.polygon) region["polygon"].push_back(corner(p));
+  }
   Json& conductors = root["conductors"];
   conductors["mode"] = name_of(study.conductors);
   conductors["surface"] = name_of(study.conductor_surface);

@@ -94,15 +94,19 @@ void write_regions(const std::vector<std::int32_t>& old_regions, const Regions& 
 
 }  // namespace
 
-Extraction extract(Cdt& cdt, double unit_nm, const Regions& regions, double sine2_bound) {
+Extraction extract(Cdt& cdt, double unit_nm, const Regions& regions, double sine2_bound,
+                   const std::vector<Cdt::Vertex_handle>& first) {
   Extraction result;
   result.num_vertices = static_cast<std::int64_t>(cdt.number_of_vertices());
   Raw raw = copy_domain(cdt, regions, sine2_bound, result);
+  std::vector<std::int32_t> first_ids;
+  for (const Cdt::Vertex_handle v : first) first_ids.push_back(v->graph_vertex());
   cdt.clear();
   mesh::PlanarMeshParts& parts = result.parts;
   Renumbering point_ids(raw.points.size()), region_ids(regions.size());
   parts.triangles.reserve(raw.triangles.size());
   parts.regions.reserve(raw.triangles.size());
+  for (const std::int32_t id : first_ids) point_ids(id);
   for (const std::uint32_t t : triangle_order(raw)) {
     const auto& [a, b, c] = raw.triangles[t];
     const std::int32_t p = point_ids(a), q = point_ids(b), r = point_ids(c);

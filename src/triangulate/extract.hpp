@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "pcbmesh/mesh/planar_mesh.hpp"
 #include "src/triangulate/cdt.hpp"
@@ -18,6 +19,8 @@ struct Extraction {
 
 /// Flat arrays of the faces inside the domain. Triangles follow a Hilbert curve, points and regions are numbered where the
 /// triangles first meet them. Empties the triangulation, so that both never stand in memory at full size.
-[[nodiscard]] Extraction extract(Cdt& cdt, double unit_nm, const Regions& regions, double sine2_bound);
+/// @param first  vertices that are numbered before all others, in this order.
+[[nodiscard]] Extraction extract(Cdt& cdt, double unit_nm, const Regions& regions, double sine2_bound,
+                                 const std::vector<Cdt::Vertex_handle>& first = {});
 
 }  // namespace pcbmesh::triangulate

@@ -15,6 +15,7 @@
 #include "src/triangulate/flood.hpp"
 #include "src/triangulate/hex_seed.hpp"
 #include "src/triangulate/insert_graph.hpp"
+#include "src/triangulate/periodic_sides.hpp"
 #include "src/triangulate/refine.hpp"
 #include "src/triangulate/sheet_chords.hpp"
 #include "src/triangulate/smooth.hpp"
@@ -28,6 +29,8 @@ constexpr double floor_nm = 50;
 constexpr int seed_sweeps = 10;
 constexpr int guarded_sweeps = 20;
 constexpr int chord_rounds = 3;
+// Splits go down to where the triangles are good; a handful of rounds is normal.
+constexpr int most_mirrorings = 40;
 // Before refinement needles at outlines are normal; this keeps smoothing from making new ones (8 degrees).
 constexpr double seed_guard_sine2 = 0.02;
 
@@ -121,6 +124,11 @@ TriangulateResult triangulate(const mesh::PlanarGraph& graph, const model::Model
             statistics};
   }
   const GraphEdgeIndex graph_edges(graph);
+  const PeriodicSides periodic(model, unit_nm);
+  if (!periodic.is_empty()) {
+    (void)periodic.mirror(cdt, graph_edges);
+    periodic.require_same(cdt, flood(cdt, graph, graph_edges), model);
+  }
   const double area = mark_domain(cdt, flood(cdt, graph, graph_edges));
   statistics.num_input_vertices = static_cast<std::int64_t>(graph.vertices().size());
   statistics.cdt_s = clock.lap();
@@ -135,15 +143,28 @@ TriangulateResult triangulate(const mesh::PlanarGraph& graph, const model::Model
   const double longest = options.longest_edge_nm / unit_nm;
   const double expected = 3 * static_cast<double>(graph.vertices().size()) + 2.6 * area / (longest * longest);
   const RefineLimits limits{options.max_vertices, expected, unit_nm};
+  // Each side gets the vertices that refinement put on its partner, until neither asks for more.
+  const auto refine_all = [&] {
+    for (int round = 0;; ++round) {
+      refine(cdt, bounds, graph_edges, limits, options.as_in_paper, progress);
+      if (periodic.is_empty() || periodic.mirror(cdt, graph_edges) == 0) return;
+      if (round == most_mirrorings)
+        throw Error(ErrorCode::triangulation_limit,
+                    fmt::format("the triangles of periodic sides do not settle within {} rounds; take a longer edge, or a "
+                                "region whose sides are crossed at right angles",
+                                most_mirrorings));
+      mark_domain(cdt, flood(cdt, graph, graph_edges));
+    }
+  };
   if (options.seed == Seed::hexagonal) {
     seed_hexagonal(cdt, graph_edges, {.edge = lattice_over_longest * longest, .max_vertices = options.max_vertices}, progress);
     mark_domain(cdt, flood(cdt, graph, graph_edges));
     smooth(cdt, bounds, {seed_sweeps, seed_guard_sine2}, progress);
   }
-  refine(cdt, bounds, graph_edges, limits, options.as_in_paper, progress);
+  refine_all();
   if (options.smooth) {
     smooth(cdt, bounds, {guarded_sweeps, bounds.sine2_bound()}, progress);
-    refine(cdt, bounds, graph_edges, limits, options.as_in_paper, progress);  // flips may have made an edge too long
+    refine_all();  // flips may have made an edge too long
   }
   if (options.split_sheet_chords) {
     // Splitting makes angles smaller and refinement may put vertices on rims again: twice for quality, at last for the rule.
@@ -152,13 +173,13 @@ TriangulateResult triangulate(const mesh::PlanarGraph& graph, const model::Model
       statistics.num_chord_splits += num_splits;
       if (num_splits == 0 || round + 1 == chord_rounds) break;
       mark_domain(cdt, flood(cdt, graph, graph_edges));
-      refine(cdt, bounds, graph_edges, limits, options.as_in_paper, progress);
+      refine_all();
     }
   }
   statistics.refine_s = clock.lap();
 
   const Regions regions = flood(cdt, graph, graph_edges);
-  Extraction extraction = extract(cdt, unit_nm, regions, bounds.sine2_bound());
+  Extraction extraction = extract(cdt, unit_nm, regions, bounds.sine2_bound(), periodic.in_order(cdt));
   statistics.num_steiner = extraction.num_vertices - statistics.num_input_vertices;
   statistics.num_below_bound = extraction.num_below_bound;
   statistics.min_angle_deg = std::asin(std::sqrt(std::min(extraction.smallest_sine2, 0.75))) * 180 / std::numbers::pi;

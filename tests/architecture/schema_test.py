@@ -42,7 +42,7 @@ def check_schema(path):
     schema = load(path)
     jsonschema.Draft202012Validator.check_schema(schema)
     # Fields whose absence means something no value can say.
-    no_default = {"$schema", "schema_version", "points", "rect", "circle", "slot", "component", "pin", "at", "nets"}
+    no_default = {"$schema", "schema_version", "points", "rect", "circle", "slot", "component", "pin", "at", "nets", "thickness"}
     for place, field, required in fields(schema, path):
         looked_at += 1
         for key in ("title", "description"):

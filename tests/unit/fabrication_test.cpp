@@ -262,6 +262,51 @@ TEST(Fabrication, MaskLiesOverAndBesideCopperButNotOverPads) {
   (void)checked(board, R"("solder_mask": true, "region": {"box": {"min": [6, 4], "max": [9, 6]}})");
 }
 
+constexpr const char* masked_board =
+    R"("nets": ["A", "B"], "tracks": [{"layer": "L1", "net": "A", "width": "0.2mm", "points": [[2, 5], [8, 5]]},
+      {"layer": "L1", "net": "B", "width": "0.2mm", "points": [[2, 5.5], [8, 5.5]]}],
+      "pads": [{"layer": "L1", "net": "A", "at": [8, 5], "size": [0.6, 0.6]}],
+      "vias": [{"at": [3, 5.5], "drill": "0.3mm", "pad": "0.6mm", "net": "B"}])";
+
+TEST(Fabrication, MaskLiesOnSheetsInFullAndLeavesThemThere) {
+  const Board board = board_with(masked_board);
+  const Model m = composed(board, R"("solder_mask": true, "conductors": {"mode": "sheet"})");
+  // The copper has no height, so nothing of the mask stands beside it: all its 20 um lie over sheets and laminate alike.
+  for (const Nm above : {Nm{1'000}, Nm{19'000}}) {
+    EXPECT_EQ(label_at(m, "mask", 5, 5, above), "ink|no net") << "over the sheet";
+    EXPECT_EQ(label_at(m, "mask", 5, 7, above), "ink|no net") << "beside it";
+    EXPECT_EQ(label_at(m, "mask", 8, 5, above), "air|no net") << "open over the pad";
+  }
+  const study::Study study = parsed(R"("solder_mask": true, "conductors": {"mode": "sheet"})");
+  const mesh::PrismMesh masked = pipeline::mesh_board(board, study).mesh;
+  const mesh::PrismMesh bare = pipeline::mesh_board(board, parsed(R"("conductors": {"mode": "sheet"})")).mesh;
+  const auto sheet_mm2 = [](const mesh::PrismMesh& mesh, std::string_view name) {
+    for (const mesh::FaceTag& tag : mesh.face_tags())
+      if (tag.name == name) return tag.area_m2 * 1e6;
+    return 0.0;
+  };
+  // 6 mm of track with a round end, and what the pad has more; under mask and opening alike.
+  EXPECT_NEAR(sheet_mm2(masked, "sheet|A"), 6 * 0.2 + 0.01 * std::numbers::pi / 2 + 0.36 - 0.06, 0.01);
+  EXPECT_NEAR(sheet_mm2(masked, "sheet|A"), sheet_mm2(bare, "sheet|A"), 1e-4);
+  EXPECT_NEAR(sheet_mm2(masked, "sheet|B"), sheet_mm2(bare, "sheet|B"), 1e-4);
+}
+
+TEST(Fabrication, MaskOpensAndShortsNoNet) {
+  const Board board = board_with(masked_board);
+  const std::string region = R"("region": {"box": {"min": [2.5, 4], "max": [9, 6.5]}}, "conductors": {"mode": ")";
+  for (const char* mode : {"solid", "hollow", "sheet"}) {
+    const validation::Report bare = checked(board, region + mode + R"("})");
+    const validation::Report masked = checked(board, region + mode + R"("}, "solder_mask": true)");
+    ASSERT_EQ(bare.nets.size(), 2U) << mode;
+    ASSERT_EQ(masked.nets.size(), 2U) << mode;
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_EQ(masked.nets[i].name, bare.nets[i].name) << mode;
+      EXPECT_EQ(masked.nets[i].pieces, 1) << mode << " " << masked.nets[i].name;
+      EXPECT_EQ(bare.nets[i].pieces, 1) << mode << " " << bare.nets[i].name;
+    }
+  }
+}
+
 TEST(Fabrication, GapsAreFilledAsTheStudySays) {
   const Board board = board_with(R"("nets": [])");
   EXPECT_EQ(label_at(composed(board, ""), "L2", 5, 5), "PP|no net");
@@ -310,8 +355,8 @@ TEST(Materials, StudiesChooseDefineAndDisperse) {
   EXPECT_EQ(plain.eps_r, 4);
   const board::Material taken = named(
       composed(board, R"("materials": {"use": [{"board": "PP", "take": "Megtron 6"}]}, "mesh": {"frequency": "10GHz"})"), "PP");
-  EXPECT_LT(taken.eps_r, 3.71);
-  EXPECT_GT(taken.eps_r, 3.69);
+  EXPECT_LT(taken.eps_r, 3.65) << "the value at 1 GHz";
+  EXPECT_GT(taken.eps_r, 3.63);
   EXPECT_EQ(taken.at_hz, 1e10);
   const board::Material stated = named(
       composed(board,

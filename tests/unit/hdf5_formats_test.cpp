@@ -134,8 +134,8 @@ void expect_equal(const mesh::PrismMesh& a, const mesh::PrismMesh& b) {
   ASSERT_EQ(a.volume_tags().size(), b.volume_tags().size());
   for (std::size_t i = 0; i < a.volume_tags().size(); ++i) {
     const mesh::VolumeTag &x = a.volume_tags()[i], &y = b.volume_tags()[i];
-    EXPECT_EQ(std::tie(x.id, x.name, x.layer, x.material, x.net, x.num_prisms, x.volume_m3),
-              std::tie(y.id, y.name, y.layer, y.material, y.net, y.num_prisms, y.volume_m3));
+    EXPECT_EQ(std::tie(x.id, x.name, x.layer, x.material, x.net, x.stretched, x.num_prisms, x.volume_m3),
+              std::tie(y.id, y.name, y.layer, y.material, y.net, y.stretched, y.num_prisms, y.volume_m3));
   }
   ASSERT_EQ(a.face_tags().size(), b.face_tags().size());
   for (std::size_t i = 0; i < a.face_tags().size(); ++i) {
@@ -144,6 +144,12 @@ void expect_equal(const mesh::PrismMesh& a, const mesh::PrismMesh& b) {
                        x.partner, x.num_triangles, x.num_quads, x.area_m2),
               std::tie(y.id, y.name, y.kind, y.net, y.is_inner, y.condition, y.impedance_ohm, y.material, y.thickness_m, y.port,
                        y.partner, y.num_triangles, y.num_quads, y.area_m2));
+  }
+  ASSERT_EQ(a.shell().has_value(), b.shell().has_value());
+  if (a.shell()) {
+    EXPECT_EQ(a.shell()->inner_min_m, b.shell()->inner_min_m);
+    EXPECT_EQ(a.shell()->outer_max_m, b.shell()->outer_max_m);
+    EXPECT_EQ(a.shell()->order, b.shell()->order);
   }
   ASSERT_EQ(a.ports().size(), b.ports().size());
   for (std::size_t i = 0; i < a.ports().size(); ++i) {
@@ -179,6 +185,8 @@ TEST(NativeMesh, ComesBackEqual) {
     parts.face_tags[2].impedance_ohm = 377;
     parts.face_tags[0].material = 1;
     parts.face_tags[0].thickness_m = 35e-6;
+    parts.volume_tags[0].stretched = 5;
+    parts.shell = mesh::Shell{{1, 2, 3}, {4, 5, 6}, {0, 1, 2}, {5, 6, 7}, 3};
     const mesh::PrismMesh mesh = mesh::PrismMesh::from_parts(parts);
     const Folder folder;
     write_mesh(mesh, folder / "a.pcbmesh", {.unit = LengthUnit::millimetre, .version = {}});

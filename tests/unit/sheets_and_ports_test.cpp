@@ -128,7 +128,7 @@ TEST(Ports, M4_TheyComeLastAndStandBetweenTheirConductors) {
   EXPECT_EQ(body.kind, model::BodyKind::port);
   EXPECT_EQ(model.slabs()[static_cast<std::size_t>(body.first_slab)].layer, "core");
   EXPECT_EQ(body.first_slab, body.last_slab);
-  EXPECT_EQ(model.first_port_body(), static_cast<std::int32_t>(model.bodies().size()) - 1);
+  EXPECT_EQ(model.first_guide_body(), static_cast<std::int32_t>(model.bodies().size()) - 1);
 }
 
 TEST(Ports, FlatPortsCrossTheGap) {

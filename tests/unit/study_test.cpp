@@ -170,7 +170,13 @@ TEST(Study, RoundTripIsExactForRandomStudies) {
   const auto real = [&](double low, double high) { return low + (high - low) * static_cast<double>(random() >> 11) * 0x1p-53; };
   for (int round = 0; round < 500; ++round) {
     Study s;
-    s.region = static_cast<RegionKind>(upto(2));
+    s.region = static_cast<RegionKind>(upto(3));
+    if (s.region == RegionKind::polygon || upto(3) == 1) {
+      const Nm x = upto(500'000'000), y = -upto(500'000'000);
+      s.polygon = {{x, y}, {x + 1 + upto(1000), y}, {x, y + 1 + upto(400'000'000)}};
+    }
+    if (s.region == RegionKind::polygon)
+      s.polygon_boundaries = {{BoundaryKind::impedance, real(1, 1e6)}, {}, {BoundaryKind::pmc}};
     for (std::int64_t i = 0; i <= upto(3); ++i) s.nets.push_back(fmt::format("net \"{}\\\n\xC3\xA9{}", i, random()));
     s.margin = upto(max_coordinate_nm);
     if (s.region == RegionKind::box || upto(1) == 1) {
@@ -183,6 +189,12 @@ TEST(Study, RoundTripIsExactForRandomStudies) {
     s.air_above = upto(max_coordinate_nm);
     s.air_below = upto(1000) * 1000;
     s.air_around = upto(1000) * 1'000'000;
+    if (s.air_above > 0 && upto(1) == 1)
+      s.boundaries[static_cast<std::size_t>(HullSide::zmax)] = {.kind = BoundaryKind::pml,
+                                                                .thickness = nm_per_um + upto(nm_per_mm),
+                                                                .layers = static_cast<int>(1 + upto(49)),
+                                                                .order = static_cast<int>(1 + upto(3)),
+                                                                .backing = BoundaryKind::pmc};
     if (upto(1) == 1) s.frequency_hz = real(1, 1e12);
     if (upto(1) == 1) s.longest_edge = 500'000'000 + upto(500'000'000);
     if (upto(1) == 1) s.edge_at_copper = 1 + upto(499'999'999);
@@ -215,7 +227,7 @@ TEST(Study, RoundTripIsExactForRandomStudies) {
 
 TEST(Study, EqualityLooksAtEveryField) {
   const Study base;
-  std::vector<Study> others(30);
+  std::vector<Study> others(33);
   std::size_t i = 0;
   others[i++].region = RegionKind::box;
   others[i++].nets = {"A"};
@@ -247,6 +259,9 @@ TEST(Study, EqualityLooksAtEveryField) {
   others[i++].arcs.sagitta_nm = 1;
   others[i++].arcs.mode = geometry::ArcMode::octagon;
   others[i++].unit = LengthUnit::micrometre;
+  others[i++].polygon = {{0, 0}};
+  others[i++].polygon_boundaries.resize(1);
+  others[i++].boundaries[0].layers = 5;
   ASSERT_EQ(i, others.size());
   for (const Study& other : others) EXPECT_FALSE(other == base) << to_json(other);
   Study other;

@@ -108,6 +108,7 @@ TEST(TagsJson, ThePublishedSchemaNamesEveryKey) {
   mesh::PrismMeshParts parts = testing::sample_parts();
   parts.ports = {{.name = "P1", .positive_net = 1, .negative_net = 0}};
   parts.net_pieces[1] = 1;
+  parts.shell = mesh::Shell{};
   parts.materials[0].dispersion = {.kind = DispersionKind::debye, .eps_inf = 3, .poles = {{1, 1e9}}};
   EXPECT_EQ(schema_keys_of(schema), keys_of(written(parts)));
 }

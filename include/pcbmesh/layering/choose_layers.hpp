@@ -37,10 +37,6 @@ namespace pcbmesh::layering {
 [[nodiscard]] std::vector<int> sublayer_counts(std::span<const model::Slab> slabs, study::SublayerRule rule,
                                                std::optional<double> common_height_m, const HeightStatistics& final_heights);
 
-/// About how many sub-layers of one slab the final mesh will have, before it is made: never more than the rule asks by the
-/// common height.
-[[nodiscard]] double forecast_sublayers(const study::Study& study, const model::Slab& slab, double common_height_m);
-
 /// Sub-layers of each slab as the paper's tables imply: case 1 (basic) truncates quotients of z differences in single
 /// precision, z counted from the bottom in metres, so that 0.4 over 0.1 mm may be 3; in cases 2 to 5 layers stay whole.
 [[nodiscard]] std::vector<int> paper_counts(std::span<const model::Slab> slabs, study::HeightPolicy policy);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -15,13 +16,14 @@
 
 namespace pcbmesh::mesh {
 
-/// One volume group: all prisms of one (layer, material, net).
+/// One volume group: all prisms of one (layer, material, net), and of one set of stretched axes.
 struct VolumeTag {
-  std::int32_t id = 0;        ///< 1-based, dense
-  std::string name;           ///< "layer|material|net"; net "none" where there is none
-  std::int32_t layer = 0;     ///< index into layers
-  std::int32_t material = 0;  ///< index into materials
-  std::int32_t net = -1;      ///< index into nets, or -1
+  std::int32_t id = 0;     ///< 1-based, dense
+  std::string name;        ///< "layer|material|net", net "none" where there is none; "...|pml xy" where x and y are stretched
+  std::int32_t layer = 0;  ///< index into layers
+  std::int32_t material = 0;   ///< index into materials
+  std::int32_t net = -1;       ///< index into nets, or -1
+  std::uint8_t stretched = 0;  ///< axes of a perfectly matched layer: 1 x, 2 y, 4 z; 0 = none
   std::int64_t num_prisms = 0;
   double volume_m3 = 0;
 };
@@ -66,6 +68,16 @@ struct FaceTag {
   std::int64_t num_quads = 0;
   double area_m2 = 0;
 };
+
+/// Perfectly matched layers: between two boxes, which coincide on sides without any. The stretch of an axis grows from 0 at
+/// the inner box with the depth over the thickness, to the power `order`.
+struct Shell {
+  std::array<double, 3> inner_min_m{}, inner_max_m{}, outer_min_m{}, outer_max_m{};
+  int order = 2;
+};
+
+/// "x", "yz" ...; empty for 0.
+[[nodiscard]] std::string axes_text(std::uint8_t stretched);
 
 enum class PortKind { lumped, wave };
 
@@ -115,6 +127,7 @@ struct PrismMeshParts {
   std::vector<std::int32_t> net_pieces;   ///< per net: connected pieces of its copper by the exact layout; -1 = not known
   std::vector<std::array<std::int32_t, 2>> touching_nets;  ///< pairs of nets that touch in the layout itself
   std::vector<Port> ports;
+  std::optional<Shell> shell{};  ///< set if some volume tag is stretched
 };
 
 /// The mesh: PlanarMesh x LayerPlan x label table. Implicit: ids by arithmetic, nodes and cells computed on demand.
@@ -144,6 +157,7 @@ class PrismMesh {
   [[nodiscard]] std::span<const std::int32_t> net_pieces() const { return parts_->net_pieces; }
   [[nodiscard]] std::span<const std::array<std::int32_t, 2>> touching_nets() const { return parts_->touching_nets; }
   [[nodiscard]] std::span<const Port> ports() const { return parts_->ports; }
+  [[nodiscard]] const std::optional<Shell>& shell() const { return parts_->shell; }
 
   [[nodiscard]] std::int64_t num_nodes() const { return num_nodes_; }
   [[nodiscard]] std::int64_t num_prisms() const { return num_prisms_; }

@@ -24,6 +24,7 @@ struct Slab {
   Nm z_top_nm = 0;             ///< > z_bottom_nm
   std::int32_t material = -1;  ///< inside the board outline, where no body is: index into materials
   std::int32_t outside = -1;   ///< outside the board outline: material, or -1 = not meshed
+  bool is_stretched = false;   ///< of a perfectly matched layer above or below
   bool operator==(const Slab&) const = default;
 };
 
@@ -34,8 +35,12 @@ enum class BodyKind {
   hole,    ///< unplated hole: material of the body (air), or void if material is -1
   barrel,  ///< plated hole: copper of its net
   filler,  ///< air or dielectric that takes a place of its own: inside of a tube, backdrilled hole, mask over copper
-  port     ///< footprint of a port: fills nothing, its edges are kept straight
+  shell,   ///< perfectly matched layers beside the domain: fills nothing, its edges are kept straight
+  port     ///< footprint of a port: likewise
 };
+
+/// Axes along which a perfectly matched layer stretches its coordinates.
+inline constexpr std::uint8_t stretched_x = 1, stretched_y = 2, stretched_z = 4;
 
 /// Where a conductor without thickness lies.
 struct SheetPlace {
@@ -56,6 +61,7 @@ struct Body {
   std::int32_t last_slab = 0;         ///< highest slab, >= first_slab
   std::int32_t priority = 0;          ///< the highest present wins; ties: the lower body index
   bool hollow = false;                ///< not meshed, skin tagged surface|net
+  std::uint8_t stretched = 0;         ///< shell: stretched_x or stretched_y
   std::optional<SheetPlace> sheet{};  ///< copper: no thickness, its faces tagged sheet|net
   bool operator==(const Body&) const = default;
 };
@@ -70,7 +76,7 @@ struct BodyShape {
 };
 
 /// What holds on a side of the domain.
-enum class SideKind { none, absorbing, pec, pmc, impedance };
+enum class SideKind { none, absorbing, pec, pmc, impedance, periodic };
 struct SideCondition {
   SideKind kind = SideKind::none;
   double ohms = 0;  ///< kind impedance
@@ -103,6 +109,13 @@ struct Port {
   std::array<double, 3> at_m{};              ///< middle
 };
 
+/// Perfectly matched layers round the domain: between two boxes, which coincide on sides without any.
+struct Shell {
+  geometry::Box inner, outer;
+  std::array<Nm, 2> inner_z{}, outer_z{};  ///< bottom, top
+  int order = 2;                           ///< the stretch grows with the depth to this power
+};
+
 struct ModelParts {
   std::string source;
   std::vector<board::Material> materials;
@@ -116,6 +129,9 @@ struct ModelParts {
   std::vector<geometry::OutlineCircle> circles{};  ///< that outlines may follow, ascending; only if the study asks for order 2
   std::vector<Port> ports;
   std::array<SideCondition, num_sides> sides{};
+  std::vector<geometry::Point> outline;      ///< of a polygonal domain: corners, side k from corner k to the next; else empty
+  std::vector<SideCondition> outline_sides;  ///< one per corner
+  std::optional<Shell> shell{};
   bool conductors_are_perfect = false;  ///< hollow and sheet conductors: PEC, not lossy copper
 };
 
@@ -124,6 +140,7 @@ struct Label {
   std::int32_t material = -1;  ///< -1 = void
   std::int32_t net = board::no_net;
   std::int32_t hollow_net = -2;  ///< void because of a hollow conductor: its net (may be no_net); -2 = not so
+  std::uint8_t stretched = 0;    ///< axes of a perfectly matched layer
   [[nodiscard]] bool is_void() const { return material < 0; }
   friend auto operator<=>(const Label&, const Label&) = default;
 };
@@ -134,7 +151,7 @@ struct Label {
 /// @guarantee M2  bodies[0] is the domain and bodies[1] the board, both through all slabs; every body names existing slabs,
 /// materials, nets
 /// @guarantee M3  every shape names an existing body and has at least one ring
-/// @guarantee M4  bodies of ports come last; every port has one, and every such body a port
+/// @guarantee M4  bodies of the shell come last but for those of ports; every port has one, and every such body a port
 class Model {
  public:
   /// @throws Error internal (901) when an invariant is broken: only compose() builds models.
@@ -151,9 +168,12 @@ class Model {
   [[nodiscard]] Nm narrowest_feature_nm() const { return parts_->narrowest_feature_nm; }
   [[nodiscard]] Nm narrowest_of_interest_nm() const { return parts_->narrowest_of_interest_nm; }
   [[nodiscard]] std::span<const Port> ports() const { return parts_->ports; }
-  /// Index of the first port's body; the number of bodies if there is no port.
-  [[nodiscard]] std::int32_t first_port_body() const;
+  /// Index of the first body that fills nothing, of the shell or a port; the number of bodies if there is none.
+  [[nodiscard]] std::int32_t first_guide_body() const { return first_guide_; }
   [[nodiscard]] const std::array<SideCondition, num_sides>& sides() const { return parts_->sides; }
+  [[nodiscard]] std::span<const geometry::Point> outline() const { return parts_->outline; }
+  [[nodiscard]] std::span<const SideCondition> outline_sides() const { return parts_->outline_sides; }
+  [[nodiscard]] const std::optional<Shell>& shell() const { return parts_->shell; }
   [[nodiscard]] bool conductors_are_perfect() const { return parts_->conductors_are_perfect; }
 
   /// Net name, or "no net".
@@ -171,6 +191,7 @@ class Model {
   /// Body of highest priority in a slab, or -1.
   [[nodiscard]] std::int32_t top_body(std::int32_t slab, std::span<const std::int32_t> present) const;
   std::shared_ptr<const ModelParts> parts_;
+  std::int32_t first_guide_ = 0;
 };
 
 }  // namespace pcbmesh::model

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pcbmesh/mesh/planar_mesh.hpp"
@@ -48,7 +49,8 @@ struct Forecast {
 /// Exact counts of a mesh. @cost O(planar edges x slabs).
 [[nodiscard]] Forecast measured(const mesh::PrismMesh& mesh);
 
-/// @throws Error prism_limit (601) if first-order unknowns exceed the study's limit.
-void require_few_unknowns(const Forecast& forecast, const study::Study& study);
+/// @param what  whose forecast it is, for the message.
+/// @throws Error prism_limit (601) if prisms or first-order unknowns exceed the study's limits.
+void require_within_limits(const Forecast& forecast, const study::Study& study, std::string_view what);
 
 }  // namespace pcbmesh::pipeline

@@ -36,7 +36,7 @@ enum class PortShape {
   coaxial     ///< flat ring in the antipad of a via
 };
 
-/// Sides of the domain. `side` stands for all other outer walls.
+/// Sides of the domain. `side` stands for all other outer walls, those of a polygon too.
 enum class HullSide { xmin, xmax, ymin, ymax, zmin, zmax, side };
 inline constexpr std::size_t num_hull_sides = 7;
 
@@ -71,13 +71,18 @@ enum class BoundaryKind {
   pec,        ///< electric wall; symmetry plane of odd fields
   pmc,        ///< magnetic wall; symmetry plane of even fields
   impedance,  ///< surface impedance
-  periodic    ///< with the opposite side
+  periodic,   ///< with the opposite side, whose triangles match; xmin with xmax, ymin with ymax
+  pml         ///< perfectly matched layers outside the air box, and `backing` behind them
 };
 
 /// What holds on one side of the domain.
 struct Boundary {
   BoundaryKind kind = BoundaryKind::automatic;
-  double ohms = 0;  ///< kind impedance
+  double ohms = 0;                           ///< kind impedance
+  Nm thickness = 0;                          ///< kind pml: of all its layers
+  int layers = 3;                            ///< kind pml: elements across, at least
+  int order = 2;                             ///< kind pml: power of the depth by which the stretch grows; one for all sides
+  BoundaryKind backing = BoundaryKind::pec;  ///< kind pml: on the outer faces; pec, pmc, absorbing or none
   bool operator==(const Boundary&) const = default;
 };
 

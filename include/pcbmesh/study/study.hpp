@@ -18,9 +18,10 @@ namespace pcbmesh::study {
 
 /// What part of the board is meshed.
 enum class RegionKind {
-  whole,  ///< the whole board
-  nets,   ///< bounding box of the named nets' copper, grown by the margin
-  box     ///< the given box
+  whole,   ///< the whole board
+  nets,    ///< bounding box of the named nets' copper, grown by the margin
+  box,     ///< the given box
+  polygon  ///< the given polygon
 };
 
 /// How copper enters the mesh.
@@ -101,9 +102,10 @@ struct Study {
   static constexpr int schema_version = 1;
 
   RegionKind region = RegionKind::whole;
-  std::vector<std::string> nets;     ///< region nets: at least one
-  Nm margin = 2 * nm_per_mm;         ///< region nets: growth of the bounding box
-  std::optional<geometry::Box> box;  ///< region box
+  std::vector<std::string> nets;         ///< region nets: at least one
+  Nm margin = 2 * nm_per_mm;             ///< region nets: growth of the bounding box
+  std::optional<geometry::Box> box;      ///< region box
+  std::vector<geometry::Point> polygon;  ///< region polygon: corners of a simple ring; side k runs from corner k to the next
 
   ConductorMode conductors = ConductorMode::solid;
   std::vector<ConductorRule> conductor_rules;
@@ -137,6 +139,8 @@ struct Study {
   Solver solver = Solver::none;
   std::vector<Port> ports;
   std::array<Boundary, num_hull_sides> boundaries{};  ///< by HullSide
+  /// Region polygon: of sides side_1, side_2 ...; automatic or missing = what `side` has.
+  std::vector<Boundary> polygon_boundaries;
   std::optional<Sweep> sweep;
   Modes modes;
   Fabrication fabrication;  ///< the board as it is really made
@@ -160,6 +164,10 @@ struct Study {
 
 /// The conditions of all sides with `automatic` decided.
 [[nodiscard]] std::array<Boundary, num_hull_sides> resolved_boundaries(const Study& study);
+/// The same for the sides of the polygon, one per corner; empty for other regions.
+[[nodiscard]] std::vector<Boundary> resolved_polygon_boundaries(const Study& study);
+/// Side of the box opposite to one of the six.
+[[nodiscard]] HullSide opposite(HullSide side);
 
 /// Highest frequency of interest: study.frequency_hz, else the end of the sweep, else nothing.
 [[nodiscard]] std::optional<double> highest_frequency_hz(const Study& study);
@@ -168,6 +176,11 @@ struct Study {
 /// @throws Error study_invalid (102) with the field's JSON pointer, file_unreadable (201), file_syntax (202) with the line.
 [[nodiscard]] Study read_study(const std::filesystem::path& file);
 [[nodiscard]] Study parse_study(std::string_view json, std::string_view file_name);
+
+/// Reads a study whose ranges and combinations are looked at later, together with a board: faults_of() is not asked.
+[[nodiscard]] Study read_unchecked_study(const std::filesystem::path& file);
+/// Faults, one a line as text_of() has them, each with its line in the study file behind it.
+[[nodiscard]] std::string with_lines(std::string_view faults, const std::filesystem::path& file);
 
 /// The study as JSON, every default filled in; parse_study(to_json(s)) == s.
 [[nodiscard]] std::string to_json(const Study& study);
@@ -187,7 +200,7 @@ struct StudyWords {
 
 /// One thing wrong with a study, by itself or on a board.
 struct Fault {
-  std::string field;  ///< JSON pointer, "/ports/1/net"
+  std::string field;  ///< JSON pointer, "/ports/1/net"; empty = of no one field
   std::string text;   ///< what, where, what to do
 };
 

@@ -63,7 +63,9 @@ struct TriangulateResult {
 /// @guarantee T3  same input and options give the same bytes
 /// @guarantee T5  with split_sheet_chords no edge inside a sheet has both its ends on the sheet's rim
 /// @guarantee T4  refinement ends: vertices are capped, and forced small angles are reported, not chased
-/// @throws Error usage (101), planar_crossing_edges (403), triangulation_limit (404), cancelled (103).
+/// @guarantee T6  where the model calls opposite sides periodic, both have the same vertices, in the same order of their ids
+/// @throws Error study_invalid (102) where periodic sides do not show the same, usage (101), planar_crossing_edges (403),
+/// triangulation_limit (404), cancelled (103).
 /// @cost about 1 us and 120 bytes at the peak per triangle, linear (benchmarks/triangulate_bench.cpp).
 /// @source Ye and Daniels sec. 3; Shewchuk 2002, Ruppert 1995 through CGAL Mesh_2.
 [[nodiscard]] TriangulateResult triangulate(const mesh::PlanarGraph& graph, const model::Model& model,
