@@ -18,6 +18,10 @@ void require_expressible(const deck::FieldProblem& problem) {
       deck::refuse(me, fmt::format("solid copper, '{}': it has no boundary of its own", volume.name),
                    "hollow or sheet conductors (--conductors hollow)");
   for (const deck::FieldPort& port : problem.ports)
+    if (port.port.kind == mesh::PortKind::coaxial && problem.options.problem == Problem::driven)
+      deck::refuse(me, fmt::format("coaxial port '{}' in this deck", port.port.name),
+                   "a lumped port on the track beside the via; GetDP and Palace have coaxial ports");
+  for (const deck::FieldPort& port : problem.ports)
     if (port.port.kind == mesh::PortKind::wave && problem.options.problem == Problem::driven)
       deck::refuse(me, fmt::format("wave port '{}' in this deck", port.port.name),
                    "a lumped port across the gap between trace and reference; Palace has wave ports");

@@ -38,8 +38,10 @@ void require_expressible(const deck::FieldProblem& problem) {
                        "a lumped port there, or the port on the hull");
 }
 
-/// "+Z" along an axis, else a unit vector.
-Json direction(const std::array<double, 3>& d) {
+/// "+Z" along an axis, "-R" towards the axis of a ring, else a unit vector.
+Json direction(const mesh::Port& port) {
+  if (port.kind == mesh::PortKind::coaxial) return "-R";
+  const std::array<double, 3>& d = port.direction;
   constexpr std::array<const char*, 3> plus{"+X", "+Y", "+Z"}, minus{"-X", "-Y", "-Z"};
   for (std::size_t axis = 0; axis < 3; ++axis)
     if (std::abs(std::abs(d[axis]) - 1) < 1e-9) return d[axis] > 0 ? plus[axis] : minus[axis];
@@ -74,10 +76,10 @@ void add_ports(const deck::FieldProblem& problem, Json& boundaries) {
     Json entry{{"Index", number}};
     if (port.faces.size() == 1) {
       entry["Attributes"] = port.faces;
-      entry["Direction"] = direction(port.port.direction);
+      entry["Direction"] = direction(port.port);
     } else {
       for (const std::int32_t face : port.faces)
-        entry["Elements"].push_back({{"Attributes", {face}}, {"Direction", direction(port.port.direction)}});
+        entry["Elements"].push_back({{"Attributes", {face}}, {"Direction", direction(port.port)}});
     }
     entry["R"] = port.port.impedance_ohm;
     entry["Excitation"] = excitation;

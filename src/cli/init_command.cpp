@@ -59,6 +59,11 @@ int run_init(const Options& options) {
   // What an engineer asks first: S-parameters up to some GHz, with the inside of the copper left out.
   const StudyOptions& given = *options.study;
   if (given.file.empty() && given.conductors.empty()) study.conductors = study::ConductorMode::hollow;
+  if (solver == study::Solver::dolfinx) {
+    // It has edge elements on tetrahedra alone, and no deck here: capacitances on the mesh's twin are what it can do at once.
+    if (given.file.empty() && given.problem.empty()) study.problem = study::Problem::electrostatic;
+    if (given.file.empty() && given.split.empty()) study.split = study::ElementSplit::tetrahedra;
+  }
   if (!study.sweep && study.problem == study::Problem::driven) study.sweep = study::Sweep{1e8, 1e10, 100, {}};
   pipeline::StartedStudy started = started_from(options, std::move(study));
   started.study.solver = solver;

@@ -42,6 +42,8 @@ bool writes_deck(const study::Study& study) {
 }
 
 void prepare_for_solver(const study::Study& study, const std::string& board, pipeline::OutputOptions& output) {
+  // MFEM up to 4.9 misreads later versions without a word.
+  if (study.solver == study::Solver::mfem && output.write.version.empty()) output.write.version = "2.2";
   if (!writes_deck(study) || output.meshes.empty()) return;
   const formats::DeckFormat& solver = formats::find_deck_format(study::name_of(study.solver));
   if (!output.write.version.empty() && output.write.version != solver.mesh.version)
