@@ -14,6 +14,7 @@
 #include "pcbmesh/compose/compose.hpp"
 #include "pcbmesh/extrude/extrude.hpp"
 #include "pcbmesh/layering/divide_layers.hpp"
+#include "pcbmesh/mesh/port_measures.hpp"
 #include "pcbmesh/overlay/overlay.hpp"
 #include "pcbmesh/triangulate/triangulate.hpp"
 
@@ -423,11 +424,26 @@ TEST(PortSizes, T6_TwoElementsAcrossAndAlongOrWhatTheStudySays) {
   EXPECT_EQ(sublayers(core), 2);
   EXPECT_EQ(sublayers(core + 1), 1) << "no port stands there";
   EXPECT_GE(made.tag("port|V").num_quads, 4);
+  std::vector<mesh::PortMeasure> measured = mesh::measure_ports(made.prisms);
+  ASSERT_EQ(measured.size(), 2U);
+  EXPECT_EQ(measured[0].least_along, 2);
+  EXPECT_GE(measured[0].least_across, 2);
+  EXPECT_EQ(measured[0].num_faces, made.tag("port|V").num_quads);
+  EXPECT_EQ(measured[0].num_faces, measured[0].least_along * measured[0].least_across) << "equal parts";
+  EXPECT_NEAR(measured[0].longest_edge_m, 0.25e-3, 1e-9) << "half of the core's height";
+  EXPECT_NEAR(measured[0].worst_aspect, 0.25e-3 * measured[0].least_across / 1e-3, 1e-6);
+  EXPECT_GE(measured[1].least_along, 2);
+  EXPECT_GE(measured[1].least_across, 10);
+  EXPECT_EQ(measured[1].num_faces, made.tag("port|G").num_triangles);
   study.ports[0].max_edge = 100 * um;
   made = meshed(layout, study);
   EXPECT_LE(longest_edge_in(made, 0), 0.1e-3 * (1 + 1e-9));
   EXPECT_EQ(sublayers(core), 5);
   EXPECT_GE(made.tag("port|V").num_quads, 50);
+  measured = mesh::measure_ports(made.prisms);
+  EXPECT_EQ(measured[0].least_along, 5);
+  EXPECT_GE(measured[0].least_across, 10);
+  EXPECT_LE(measured[0].longest_edge_m, 0.1e-3 * (1 + 1e-9));
 }
 
 // ---- wrong ports --------------------------------------------------------------------------------------------------
