@@ -189,23 +189,15 @@ void write_mesh(mesh::MeshSource& source, const std::filesystem::path& file, con
                 fmt::format("{} is not written, only read; these are: {}", chosen.name, names_with(&MeshFormat::write)),
                 {.file = file.string()});
   require_kinds(source, chosen, file);
-  // Only our own prisms promise a tagged hull; a mesh from elsewhere is written as it is, holes and all.
-  FaceBalance balance(source);
-  mesh::MeshSource& watched = source.prisms() != nullptr ? balance : source;
+  // Only our own meshes promise a tagged hull; one from elsewhere is written as it is, holes and all.
+  FaceBalance balance(source, file);
+  mesh::MeshSource& watched = source.has_tagged_hull() ? balance : source;
   if (options.one_number_space) {
     deck::OneNumberSpace numbered(watched);
     chosen.write(numbered, file, options, progress);
   } else {
     chosen.write(watched, file, options, progress);
   }
-  if (source.prisms() == nullptr || !balance.is_complete() || balance.is_balanced()) return;
-  // Better no file than one with a hole in it.
-  std::error_code ignored;
-  std::filesystem::remove(file, ignored);
-  throw Error(ErrorCode::internal,
-              "the faces of the cells that were written do not add up to the faces of the hull; the file was removed, please "
-              "report this",
-              {.file = file.string()});
 }
 
 mesh::MeshData read_mesh(const std::filesystem::path& file, std::string_view format, const Progress& progress) {

@@ -8,29 +8,8 @@
 #include <utility>
 
 namespace pcbmesh::formats {
-namespace {
-
-using mesh::ElementKind;
-
-bool is_face(ElementKind kind) {
-  return mesh::dimension_of(kind) == 2;
-}
-
-}  // namespace
-
 MeshBuilder::MeshBuilder(syntax::ByteSource& source) : source_(source) {
   mesh_.num_other_elements.assign(2, 0);
-  constexpr mesh::CellKind by_corners[] = {mesh::CellKind::tetrahedron, mesh::CellKind::pyramid, mesh::CellKind::wedge,
-                                           mesh::CellKind::hexahedron, mesh::CellKind::hexahedron};
-  for (std::size_t i = 0; i < num_kinds; ++i) {
-    const auto kind = static_cast<ElementKind>(i);
-    const int corners = mesh::corners_of(kind), num_mid = mesh::nodes_of(kind) - corners;
-    cells_[i].num_mid = faces_[i].num_mid = num_mid;
-    if (is_face(kind))
-      faces_[i].kind = corners == 3 ? mesh::FaceKind::triangle : mesh::FaceKind::quadrangle;
-    else
-      cells_[i].kind = by_corners[corners - 4];
-  }
 }
 
 std::int64_t IdRuns::find_repeated() {
@@ -94,21 +73,8 @@ void MeshBuilder::finish_nodes() {
   numbers_.finish(source_);
 }
 
-void MeshBuilder::reserve(ElementKind kind, std::int64_t count) {
-  const auto more = [](auto& items, std::size_t extra) {
-    // Many small blocks must not make each of them a copy of all before.
-    if (items.size() + extra > items.capacity()) items.reserve(std::max(items.size() + extra, items.capacity() * 2));
-  };
-  const auto in = [&](auto& block) {
-    const auto wanted = static_cast<std::size_t>(count);
-    more(block.tags, wanted);
-    more(block.corners, wanted * static_cast<std::size_t>(mesh::corners_of(kind)));
-    more(block.mids, wanted * static_cast<std::size_t>(block.num_mid));
-  };
-  is_face(kind) ? in(faces_[static_cast<std::size_t>(kind)]) : in(cells_[static_cast<std::size_t>(kind)]);
-}
-
-void MeshBuilder::add_element(ElementKind kind, std::int64_t number, std::int32_t tag, std::span<const std::int64_t> nodes) {
+void MeshBuilder::add_element(mesh::ElementKind kind, std::int64_t number, std::int32_t tag,
+                              std::span<const std::int64_t> nodes) {
   elements_.add(number);
   std::array<std::int64_t, 18> indices{};
   for (std::size_t i = 0; i < nodes.size(); ++i) {
@@ -116,17 +82,11 @@ void MeshBuilder::add_element(ElementKind kind, std::int64_t number, std::int32_
     if (indices[i] < 0) source_.fail(fmt::format("element {} names node {}, which does not exist", number, nodes[i]));
   }
   if (tag < 0) source_.fail(fmt::format("element {} has physical group {}; groups are numbered from 1 here", number, tag));
-  if (tag == 0 && is_face(kind)) {
+  if (tag == 0 && mesh::dimension_of(kind) == 2) {
     ++mesh_.num_untagged[2];
     return;
   }
-  const auto corners = indices.begin() + mesh::corners_of(kind), end = indices.begin() + mesh::nodes_of(kind);
-  const auto into = [&](auto& block) {
-    block.tags.push_back(tag);
-    block.corners.insert(block.corners.end(), indices.begin(), corners);
-    block.mids.insert(block.mids.end(), corners, end);
-  };
-  is_face(kind) ? into(faces_[static_cast<std::size_t>(kind)]) : into(cells_[static_cast<std::size_t>(kind)]);
+  blocks_.add(kind, tag, std::span(indices).first(nodes.size()));
 }
 
 void MeshBuilder::finish_elements() {
@@ -136,10 +96,7 @@ void MeshBuilder::finish_elements() {
 
 mesh::MeshData MeshBuilder::take(std::string source_name) {
   mesh_.source = std::move(source_name);
-  for (mesh::CellBlock& block : cells_)
-    if (!block.tags.empty()) mesh_.cells.push_back(std::move(block));
-  for (mesh::FaceBlock& block : faces_)
-    if (!block.tags.empty()) mesh_.faces.push_back(std::move(block));
+  blocks_.move_to(mesh_);
   return std::move(mesh_);
 }
 

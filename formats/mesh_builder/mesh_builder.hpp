@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "formats/mesh_builder/element_blocks.hpp"
 #include "formats/syntax/byte_source.hpp"
 #include "pcbmesh/mesh/mesh_data.hpp"
 #include "pcbmesh/mesh/mesh_source.hpp"
@@ -68,7 +69,7 @@ class MeshBuilder {
   [[nodiscard]] bool has_nodes() const { return has_nodes_; }
 
   /// Makes room for elements of one kind.
-  void reserve(mesh::ElementKind kind, std::int64_t count);
+  void reserve(mesh::ElementKind kind, std::int64_t count) { blocks_.reserve(kind, count); }
   /// @param nodes  node numbers of the file, in Gmsh order, as many as the kind has. Faces without a tag are dropped.
   /// @throws Error file_syntax (202): a node that does not exist, a negative tag.
   void add_element(mesh::ElementKind kind, std::int64_t number, std::int32_t tag, std::span<const std::int64_t> nodes);
@@ -83,14 +84,11 @@ class MeshBuilder {
   [[nodiscard]] mesh::MeshData take(std::string source_name);
 
  private:
-  static constexpr std::size_t num_kinds = static_cast<std::size_t>(mesh::ElementKind::wedge18) + 1;
-
   syntax::ByteSource& source_;
   mesh::MeshData mesh_;
   NodeNumbers numbers_;
   IdRuns elements_;
-  std::array<mesh::CellBlock, num_kinds> cells_;  ///< by ElementKind, as faces_
-  std::array<mesh::FaceBlock, num_kinds> faces_;
+  ElementBlocks blocks_;
   bool has_nodes_ = false;
 };
 

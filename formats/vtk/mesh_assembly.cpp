@@ -10,30 +10,7 @@
 namespace pcbmesh::formats::vtk {
 namespace {
 
-using mesh::CellKind;
 using mesh::ElementKind;
-using mesh::FaceKind;
-
-/// Where elements of a kind belong: index into cells or faces; -1 = not read.
-int place_of(ElementKind kind) {
-  switch (kind) {
-    case ElementKind::triangle:
-      return static_cast<int>(FaceKind::triangle);
-    case ElementKind::quadrangle:
-      return static_cast<int>(FaceKind::quadrangle);
-    case ElementKind::tetrahedron:
-      return static_cast<int>(CellKind::tetrahedron);
-    case ElementKind::pyramid:
-      return static_cast<int>(CellKind::pyramid);
-    case ElementKind::wedge:
-      return static_cast<int>(CellKind::wedge);
-    case ElementKind::hexahedron:
-      return static_cast<int>(CellKind::hexahedron);
-    default:
-      return -1;
-  }
-}
-
 using Point = std::array<double, 3>;
 
 /// Six times the volume between the bottom triangle and the middle of the top one: its sign is the wedge's.
@@ -52,8 +29,6 @@ double orientation(const Point& a, const Point& b, const Point& c, const Point& 
 MeshAssembly::MeshAssembly(std::filesystem::path file) : file_(std::move(file)) {
   mesh_.source = file_.string();
   mesh_.num_other_elements.assign(2, 0);
-  for (std::size_t i = 0; i < cells_.size(); ++i) cells_[i].kind = static_cast<CellKind>(i);
-  for (std::size_t i = 0; i < faces_.size(); ++i) faces_[i].kind = static_cast<FaceKind>(i);
 }
 
 void MeshAssembly::add_nodes(std::span<const double> values) {
@@ -61,46 +36,24 @@ void MeshAssembly::add_nodes(std::span<const double> values) {
   for (std::size_t i = 0; i + 2 < values.size(); i += 3) mesh_.nodes.push_back({values[i], values[i + 1], values[i + 2]});
 }
 
-void MeshAssembly::reserve(ElementKind kind, std::int64_t count) {
-  const int place = place_of(kind);
-  if (place < 0) return;
-  const auto grow = [&](auto& block) {
-    const auto size = block.tags.size() + static_cast<std::size_t>(count);
-    block.tags.reserve(size);
-    block.corners.reserve(size * static_cast<std::size_t>(mesh::nodes_of(kind)));
-  };
-  mesh::dimension_of(kind) == 3 ? grow(cells_[static_cast<std::size_t>(place)]) : grow(faces_[static_cast<std::size_t>(place)]);
-}
-
 void MeshAssembly::add_element(ElementKind kind, std::span<const std::int64_t> nodes, std::span<const std::uint8_t> order,
                                std::int32_t tag, std::int64_t first_node) {
-  const int place = place_of(kind);
-  if (place < 0)
-    throw Error(ErrorCode::file_syntax,
-                fmt::format("holds elements of the kind {}; this reader takes the first order alone", mesh::name_of(kind)),
-                {.file = file_.string()}, {num_elements_});
-  const bool is_cell = mesh::dimension_of(kind) == 3;
-  const auto index = static_cast<std::size_t>(place);
-  std::vector<std::int64_t>& corners = is_cell ? cells_[index].corners : faces_[index].corners;
-  const std::size_t start = corners.size();
-  corners.resize(start + nodes.size());
+  std::array<std::int64_t, 18> indices{};
   const std::int64_t most = num_nodes() - first_node;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    if (nodes[i] < 0 || nodes[i] >= most) {
-      corners.resize(start);
+    if (nodes[i] < 0 || nodes[i] >= most)
       throw Error(
           ErrorCode::file_syntax,
           fmt::format("element {} (counted from 0) refers to node {}, but there are {} nodes", num_elements_, nodes[i], most),
           {.file = file_.string()}, {num_elements_});
-    }
-    corners[start + order[i]] = first_node + nodes[i];
+    indices[order[i]] = first_node + nodes[i];
   }
-  (is_cell ? cells_[index].tags : faces_[index].tags).push_back(tag);
+  blocks_.add(kind, tag, std::span(indices).first(nodes.size()));
   ++num_elements_;
 }
 
 void MeshAssembly::turn_wedges_if_inside_out() {
-  std::vector<std::int64_t>& corners = cells_[static_cast<std::size_t>(CellKind::wedge)].corners;
+  const std::span<std::int64_t> corners = blocks_.cell_corners(ElementKind::wedge);
   std::int64_t balance = 0;
   for (std::size_t i = 0; i < corners.size(); i += 6) {
     const auto at = [&](std::size_t k) -> const Point& { return mesh_.nodes[static_cast<std::size_t>(corners[i + k])]; };
@@ -117,10 +70,7 @@ void MeshAssembly::turn_wedges_if_inside_out() {
 }
 
 mesh::MeshData MeshAssembly::take() {
-  for (mesh::CellBlock& block : cells_)
-    if (block.size() > 0) mesh_.cells.push_back(std::move(block));
-  for (mesh::FaceBlock& block : faces_)
-    if (block.size() > 0) mesh_.faces.push_back(std::move(block));
+  blocks_.move_to(mesh_);
   return std::move(mesh_);
 }
 

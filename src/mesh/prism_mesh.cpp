@@ -283,15 +283,20 @@ void PrismMesh::fill_prisms(std::int64_t first, std::span<std::array<std::int64_
 void PrismMesh::group_triangles(std::int32_t slab, std::vector<std::int32_t>& offsets,
                                 std::vector<std::int32_t>& triangles) const {
   offsets.assign(parts_->volume_tags.size() + 1, 0);
-  const std::int32_t num_triangles = parts_->planar.num_triangles();
-  for (std::int32_t t = 0; t < num_triangles; ++t) {
-    if (const std::int32_t tag = tag_of(slab, t); tag >= 0) ++offsets[index(tag) + 1];
+  const auto regions = parts_->planar.regions();
+  const std::size_t num_slabs = index(parts_->plan.num_slabs());
+  std::vector<std::int32_t> tags(index(parts_->planar.num_regions()));
+  for (std::size_t region = 0; region < tags.size(); ++region)
+    tags[region] = parts_->column_tags[region * num_slabs + index(slab)];
+  for (const std::int32_t region : regions) {
+    if (const std::int32_t tag = tags[index(region)]; tag >= 0) ++offsets[index(tag) + 1];
   }
   for (std::size_t i = 1; i < offsets.size(); ++i) offsets[i] += offsets[i - 1];
   triangles.resize(index(offsets.back()));
   // Filling moves each start to its end; shifting by one afterwards saves a second array.
-  for (std::int32_t t = 0; t < num_triangles; ++t) {
-    if (const std::int32_t tag = tag_of(slab, t); tag >= 0) triangles[index(offsets[index(tag)]++)] = t;
+  for (std::int32_t t = 0; t < parts_->planar.num_triangles(); ++t) {
+    const std::int32_t tag = tags[index(regions[index(t)])];
+    if (tag >= 0) triangles[index(offsets[index(tag)]++)] = t;
   }
   for (std::size_t i = offsets.size() - 1; i > 0; --i) offsets[i] = offsets[i - 1];
   offsets[0] = 0;

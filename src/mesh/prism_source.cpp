@@ -12,7 +12,13 @@
 namespace pcbmesh::mesh {
 namespace {
 
-constexpr std::size_t triangles_at_once = 512;
+constexpr std::size_t triangles_at_once = 512, triangles_ahead = 24;
+
+void prefetch(const void* address) {
+#ifdef __GNUC__
+  __builtin_prefetch(address);
+#endif
+}
 
 std::size_t index(std::int32_t i) {
   return static_cast<std::size_t>(i);
@@ -187,15 +193,23 @@ void PrismSource::visit(std::size_t block, const VisitNodes& visit) {
   PCBMESH_ASSERT(rows.total() == chosen.count);
 }
 
-void PrismSource::visit_caps(std::int32_t tag_index, Rows& rows) const {
-  for (const Cap& cap : items_with_tag(mesh_.caps(), tag_index)) {
-    auto [a, b, c] = mesh_.planar().triangles()[index(cap.triangle)];
-    if (!cap.up) std::swap(b, c);
-    const auto out = rows.room(1);
-    out[0] = mesh_.node_id(cap.level, a);
-    out[1] = mesh_.node_id(cap.level, b);
-    out[2] = mesh_.node_id(cap.level, c);
-    rows.advance(1);
+void PrismSource::visit_caps(std::int32_t tag_index, Rows& rows) {
+  const auto corners = mesh_.planar().triangles();
+  const auto caps = items_with_tag(mesh_.caps(), tag_index);
+  for (auto cap = caps.begin(); cap != caps.end();) {
+    const std::int32_t level = cap->level;
+    const std::int64_t first = mesh_.first_node_of_level(level);
+    const std::span<const std::int32_t> ranks = ranks_of(level);
+    const auto id = [&](std::int32_t v) { return first + (ranks.empty() ? v : ranks[index(v)]); };
+    for (; cap != caps.end() && cap->level == level; ++cap) {
+      auto [a, b, c] = corners[index(cap->triangle)];
+      if (!cap->up) std::swap(b, c);
+      const auto out = rows.room(1);
+      out[0] = id(a);
+      out[1] = id(b);
+      out[2] = id(c);
+      rows.advance(1);
+    }
   }
 }
 
@@ -239,8 +253,11 @@ void PrismSource::visit_wedges(std::int32_t tag_index, Rows& rows) {
       if (!known.empty() && ranks.empty() && known_ranks.empty()) return known;
       out.resize(3 * few.size());
       std::int32_t* to = out.data();
-      for (const std::int32_t t : few)
-        for (const std::int32_t v : corners[index(t)]) *to++ = ranks.empty() ? v : ranks[index(v)];
+      for (std::size_t i = 0; i < few.size(); ++i) {
+        // A group's triangles lie scattered over the plane: without a word ahead every piece of it is waited for.
+        prefetch(&corners[index(few[std::min(i + triangles_ahead, few.size() - 1)])]);
+        for (const std::int32_t v : corners[index(few[i])]) *to++ = ranks.empty() ? v : ranks[index(v)];
+      }
       known_ranks = ranks;
       return known = out;
     };
@@ -287,9 +304,12 @@ void PrismSource::visit_field(std::size_t block, CellField field, const VisitVal
     values.resize(few.size());
     if (field == CellField::region)
       std::ranges::transform(few, values.begin(), [&](std::int32_t t) { return planar.regions()[index(t)]; });
-    shapes.clear();
+    shapes.resize(few.size());
     if (field == CellField::quality)
-      for (const std::int32_t t : few) shapes.push_back(shapes_[index(t)]);
+      for (std::size_t i = 0; i < few.size(); ++i) {
+        prefetch(&shapes_[index(few[std::min(i + triangles_ahead, few.size() - 1)])]);
+        shapes[i] = shapes_[index(few[i])];
+      }
     double last_height = -1;
     for (std::int32_t k = mesh_.plan().first_sublayer(slab); k < mesh_.plan().first_sublayer(slab + 1); ++k) {
       const double height = mesh_.plan().height_m(k);

@@ -133,8 +133,9 @@ TEST(RoundTrip, GivesBackEveryNumber) {
   const mesh::PrismMesh mesh = sample();
   for (const MeshFormat* format : mesh_formats()) {
     if (format->read == nullptr || format->write == nullptr || format->scope.readable == 0) continue;
-    // Abaqus has 20 characters a coordinate and faces as sides: below. The VTK and HDF5 family has tests of its own.
-    if (format->name != "msh" && format->name != "mfem") continue;
+    // Abaqus has 20 characters a coordinate and faces as sides: below. The native file computes its cells: native_mesh_test.
+    if (format->name == "abaqus" || format->name == "native") continue;
+    const bool is_msh = format->name == "msh", is_xdmf = format->name == "xdmf", is_hdf5 = is_xdmf || format->name == "vtkhdf";
     for (const int variant : {0, 1, 2, 3, 4}) {
       mesh::PrismSource prisms(mesh);
       extrude::SecondOrderSource second(mesh, {.with_face_nodes = variant != 2});
@@ -148,11 +149,19 @@ TEST(RoundTrip, GivesBackEveryNumber) {
       if (!std::ranges::all_of(source.blocks(), [&](const auto& block) { return holds(format->scope.readable, block.kind); }))
         continue;
       for (const bool binary : {true, false}) {
+        if (!binary && is_hdf5) continue;
         for (const char* version : {"", "2.2"}) {
+          if (*version != '\0' && !is_msh) continue;
           const Folder folder;
           const std::string name = "a" + std::string(format->extensions[0]);
-          write_mesh(source, folder / name, {binary, LengthUnit::metre, version});
-          const mesh::MeshData read = read_mesh(folder / name), expected = mesh::expand(source);
+          try {
+            write_mesh(source, folder / name, {.binary = binary, .unit = LengthUnit::metre, .version = version, .faces = true});
+          } catch (const Error& error) {
+            EXPECT_EQ(error.code(), ErrorCode::format_not_built) << error.what();
+            continue;
+          }
+          // An XDMF file of cells alone is what dolfinx and meshio read; the one for ParaView has the faces too.
+          const mesh::MeshData read = read_mesh(folder / (is_xdmf ? "a_paraview.xdmf" : name)), expected = mesh::expand(source);
           SCOPED_TRACE(std::string(format->name) + " variant " + std::to_string(variant) + " " + version);
           expect_same(read, expected);
         }

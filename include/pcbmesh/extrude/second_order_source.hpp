@@ -58,6 +58,7 @@ class SecondOrderSource final : public mesh::MeshSource {
   void fill_nodes(std::int64_t first, std::span<std::array<double, 3>> out) override;
   void visit(std::size_t block, const VisitNodes& visit) override;
   [[nodiscard]] bool has_field(mesh::CellField field) const override { return prisms_.has_field(field); }
+  [[nodiscard]] bool has_tagged_hull() const override { return true; }
   void visit_field(std::size_t block, mesh::CellField field, const VisitValues& visit) override {
     prisms_.visit_field(block, field, visit);
   }

@@ -123,6 +123,9 @@ class MeshSource {
   virtual void visit_field(std::size_t block, CellField field, const VisitValues& visit);
   /// The implicit mesh behind the source whose prisms, unaltered, are its cells; null for any other source.
   [[nodiscard]] virtual const PrismMesh* prisms() const { return nullptr; }
+  /// Every face of the hull is an element of exactly one group that is not inner, turned outwards: writers check that it is so
+  /// in the file as well. A mesh from elsewhere promises nothing.
+  [[nodiscard]] virtual bool has_tagged_hull() const { return false; }
 
   static constexpr std::size_t chunk = 256;  ///< rows stay in the first-level cache
 

@@ -29,6 +29,7 @@ class PrismSource final : public MeshSource {
   [[nodiscard]] bool has_field(CellField field) const override { return field != CellField::quality || quality_ != nullptr; }
   void visit_field(std::size_t block, CellField field, const VisitValues& visit) override;
   [[nodiscard]] const PrismMesh* prisms() const override { return &mesh_; }
+  [[nodiscard]] bool has_tagged_hull() const override { return true; }
 
  private:
   struct SlabGroups {
@@ -47,7 +48,7 @@ class PrismSource final : public MeshSource {
   void survey_shapes();
   /// Index into face_tags or volume_tags of a block.
   [[nodiscard]] std::int32_t tag_index_of(const ElementBlock& block) const;
-  void visit_caps(std::int32_t tag_index, Rows& rows) const;
+  void visit_caps(std::int32_t tag_index, Rows& rows);
   void visit_walls(std::int32_t tag_index, Rows& rows) const;
   void visit_wedges(std::int32_t tag_index, Rows& rows);
   /// Calls visit(sub-layer, triangles) for a few triangles through all sub-layers, then the next few: the order of all prisms.
