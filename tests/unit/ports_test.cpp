@@ -82,6 +82,18 @@ class Layout {
       if (ring > 0) parts_.shapes.push_back({layer, net, board::ShapeKind::via, geometry::disc(at, ring), 0});
     return *this;
   }
+  Layout& hole(Point at, Nm diameter) {
+    board::Drill drill;
+    drill.figure = geometry::disc(at, diameter);
+    drill.last_copper = 1;
+    drill.plated = false;
+    parts_.drills.push_back(drill);
+    return *this;
+  }
+  Layout& cutout(Ring ring) {
+    parts_.outlines.front().cutouts.push_back({std::move(ring), {}, true});
+    return *this;
+  }
   [[nodiscard]] board::Board board() const { return board::Board::from_parts(parts_); }
 
  private:
@@ -508,6 +520,28 @@ TEST(WrongPorts, OfTheStudyItselfAllInOneRun) {
                       "/ports/3/height", "/ports/4/at: coaxial port 'coaxial' needs a via", "/ports/5/shape",
                       "/ports/6/at/side", "/ports/7/max_edge", "/ports/8/name: two ports are called 'edge'",
                       "/ports/8/at: port 'edge' stands where port 'edge'"});
+}
+
+/// A cut-out under a line takes its copper away: what a port stood on is gone.
+TEST(WrongPorts, OnACutOutOfTheBoard) {
+  for (const bool is_drilled : {true, false}) {
+    Layout layout;
+    layout.plane(1).track(0, line, {-8 * mm, 0}, {8 * mm, 0});
+    if (is_drilled)
+      layout.hole({0, 0}, 600 * um);
+    else
+      layout.cutout(geometry::circle({0, 0}, 300 * um, fine));
+    study::Study study;
+    study.ports = {port("P", {0, 0}), port("Q", {2 * mm, 0})};
+    try {
+      (void)meshed(layout, study);
+      ADD_FAILURE() << "accepted " << is_drilled;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::port_invalid);
+      expect_words(error.text(), {"/ports/0", "port 'P'", "(0, 0) mm", "ove"});
+      EXPECT_EQ(error.text().find("port 'Q'"), std::string::npos) << error.text();
+    }
+  }
 }
 
 /// What only the mesh can tell: copper of another net crosses the ring, so that faces are missing.

@@ -66,7 +66,7 @@ struct Port {
 };
 
 enum class BoundaryKind {
-  automatic,  ///< absorbing; none where a lumped port lies on the side, since an absorbing wall would load it
+  automatic,  ///< absorbing; none where a lumped port lies on the side, or a ring may lie right at it, for it would be loaded
   none,       ///< nothing is said: the solver's natural condition
   absorbing,  ///< first-order absorbing boundary
   pec,        ///< electric wall; symmetry plane of odd fields
