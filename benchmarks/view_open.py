@@ -44,5 +44,5 @@ for page in pages:
         b.set_value("#explode", 1)
         b.settle()
         exploded = time.monotonic() - start
-        print(f"| {page.stem} | {page.stat().st_size / 2**20:.2f} | {b.run('window.pcbmesh.page.prisms.tables.num_prisms'):,} | {times['first_picture'] / 1e3:.2f} | "
+        print(f"| {page.stem} | {page.stat().st_size / 2**20:.2f} | {b.run('window.pcbmesh.page.model.tables.num_cells'):,} | {times['first_picture'] / 1e3:.2f} | "
               f"{times['whole_picture'] / 1e3:.2f} | {calm:.1f} | {exploded:.1f} | {turning():.1f} | {os.getloadavg()[0]:.0f} on {os.cpu_count()} cores |", flush=True)

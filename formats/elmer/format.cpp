@@ -130,7 +130,7 @@ void write_names(const WriteJob& job, FileSink& sink) {
 
 void write(mesh::MeshSource& source, const std::filesystem::path& file, const WriteMeshOptions& options,
            const Progress& progress) {
-  FolderSink folder(file, names);
+  FolderSink folder(file, [](std::string_view name) { return std::ranges::find(names, name) != names.end(); });
   const Job job{source, folder, source.unit_m() / metres_per(options.unit), progress};
   write_file(job, "mesh.header", [](const WriteJob& inner, FileSink& sink) {
     require_count(inner, "Elmer", std::numeric_limits<std::int32_t>::max());

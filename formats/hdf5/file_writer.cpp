@@ -254,11 +254,16 @@ std::unique_ptr<ArraySink> FileWriter::begin(const std::string& path, NumberType
   return contiguous_sink(state_->part, at, num_bytes);
 }
 
-void FileWriter::commit() {
+void FileWriter::save() {
   state_->require(H5Fflush(state_->file.id(), H5F_SCOPE_GLOBAL) >= 0, "write the file");
   state_->links.reset();
   state_->file.reset();
   state_->require(true, "close the file");
+  state_->part.save(state_->target.end);
+}
+
+void FileWriter::commit() {
+  if (state_->file.is_valid()) save();
   state_->part.commit(state_->target.end);
 }
 

@@ -51,6 +51,8 @@ class FileWriter {
   /// @param num_columns  0: one dimension.
   [[nodiscard]] std::unique_ptr<ArraySink> begin(const std::string& path, NumberType type, std::int64_t num_rows,
                                                  std::int64_t num_columns = 0);
+  /// As PartFile::save().
+  void save();
   /// Makes the file appear. @throws Error write_failed (701).
   void commit();
 

@@ -34,6 +34,7 @@ void FileWriter::put_strings(const std::string&, std::span<const std::string>) {
 std::unique_ptr<ArraySink> FileWriter::begin(const std::string&, NumberType, std::int64_t, std::int64_t) {
   return nullptr;
 }
+void FileWriter::save() {}
 void FileWriter::commit() {}
 
 FileReader::FileReader(const std::filesystem::path& file) {

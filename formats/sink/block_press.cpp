@@ -17,7 +17,7 @@ namespace {
 
 /// Blocks packed at a time: the same for any number of threads, or two arrays that are written side by side would lie in the
 /// file in another order.
-constexpr std::size_t blocks_at_once = 8;
+constexpr std::size_t blocks_at_once = 4;
 
 }  // namespace
 

@@ -41,8 +41,13 @@ void FileSink::write_all(const char* bytes, std::size_t size) {
   written_ += size;
 }
 
-void FileSink::commit() {
+void FileSink::save() {
   flush();
+  part_.save(written_);
+}
+
+void FileSink::commit() {
+  if (used_ > 0) flush();
   part_.commit(written_);
 }
 

@@ -56,6 +56,8 @@ class FileSink {
   [[nodiscard]] std::uint64_t size() const noexcept { return written_ + used_; }
   [[nodiscard]] const std::filesystem::path& target() const noexcept { return part_.target(); }
 
+  /// As PartFile::save().
+  void save();
   /// Makes the file appear under its name. @throws Error write_failed (701); the old file is then still there.
   void commit();
 

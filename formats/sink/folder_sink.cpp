@@ -8,16 +8,17 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include "pcbmesh/base/error.hpp"
 
 namespace pcbmesh::formats {
 
-FolderSink::FolderSink(const std::filesystem::path& target, std::span<const std::string_view> names) : names_(names) {
+FolderSink::FolderSink(const std::filesystem::path& target, std::function<bool(std::string_view)> is_ours)
+    : is_ours_(std::move(is_ours)) {
   std::filesystem::path name = target;
   if (!name.has_filename()) name = name.parent_path();  // "board.elmer/"
   target_ = name;
@@ -35,7 +36,8 @@ FolderSink::FolderSink(const std::filesystem::path& target, std::span<const std:
 FolderSink::~FolderSink() {
   std::error_code ignored;
   if (part_.empty()) return;
-  for (const std::string_view name : names_) std::filesystem::remove(part_ / name, ignored);
+  for (const auto& entry : std::filesystem::directory_iterator(part_, ignored))
+    if (is_ours_(entry.path().filename().string())) std::filesystem::remove(entry.path(), ignored);
   std::filesystem::remove(part_, ignored);
 }
 
@@ -48,7 +50,7 @@ void FolderSink::require_replaceable() const {
                 {.file = target_.string()});
   for (const auto& entry : std::filesystem::directory_iterator(target_)) {
     const std::string name = entry.path().filename().string();
-    if (std::ranges::find(names_, name) == names_.end() || !entry.is_regular_file())
+    if (!is_ours_(name) || !entry.is_regular_file())
       throw Error(
           ErrorCode::write_failed,
           fmt::format("the folder holds '{}', which is not of this format, and the whole folder would be replaced; give "

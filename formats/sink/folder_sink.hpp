@@ -2,18 +2,18 @@
 #pragma once
 
 #include <filesystem>
-#include <span>
+#include <functional>
 #include <string_view>
 
 namespace pcbmesh::formats {
 
 /// A folder of files that appears whole or not at all: its files are written in a folder beside it, which then takes its place.
-/// An older folder of that name is replaced only if it holds nothing but files of the given names: what else lies there is
+/// An older folder of that name is replaced only if it holds nothing but files of this format: what else lies there is
 /// somebody's.
 class FolderSink {
  public:
-  /// @param names  of all files the folder may hold. @throws Error write_failed (701).
-  FolderSink(const std::filesystem::path& target, std::span<const std::string_view> names);
+  /// @param is_ours  whether a file of that name may lie in the folder. @throws Error write_failed (701).
+  FolderSink(const std::filesystem::path& target, std::function<bool(std::string_view name)> is_ours);
   ~FolderSink();
   FolderSink(const FolderSink&) = delete;
   FolderSink& operator=(const FolderSink&) = delete;
@@ -28,7 +28,7 @@ class FolderSink {
   void require_replaceable() const;
 
   std::filesystem::path target_, part_;
-  std::span<const std::string_view> names_;
+  std::function<bool(std::string_view)> is_ours_;
 };
 
 }  // namespace pcbmesh::formats

@@ -148,7 +148,7 @@ void PartFile::resize(std::uint64_t size) {
   }
 }
 
-void PartFile::commit(std::uint64_t total) {
+void PartFile::save(std::uint64_t total) {
   if (::fsync(file_) != 0 && errno != EINVAL && errno != ENOTSUP) fail(errno, "save");
   const int descriptor = std::exchange(file_, -1);
   // NFS and quotas may report a late failure here; the descriptor is gone in any case.
@@ -156,6 +156,10 @@ void PartFile::commit(std::uint64_t total) {
   struct stat now {};
   if (::fstatat(folder_, part_.c_str(), &now, AT_SYMLINK_NOFOLLOW) != 0) fail(errno, "find again");
   if (static_cast<std::uint64_t>(now.st_size) != total) fail(EIO, "save in full");
+}
+
+void PartFile::commit(std::uint64_t total) {
+  if (file_ >= 0) save(total);
   if (::renameat(folder_, part_.c_str(), folder_, name_.c_str()) != 0) fail(errno, "rename");
   part_.clear();
   if (::fsync(folder_) != 0 && errno != EINVAL && errno != ENOTSUP) {

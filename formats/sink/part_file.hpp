@@ -32,8 +32,11 @@ class PartFile {
   void resize(std::uint64_t size);
   [[nodiscard]] const std::filesystem::path& target() const noexcept { return target_; }
 
-  /// Makes the file appear under its name. @param size  that it must have. @throws Error write_failed (701); the old file is
-  /// then still there.
+  /// All bytes are on the disk, still under the other name; nothing more can be written. For files that appear together: the
+  /// slow part comes before the first of them appears. @param size  that it must have. @throws Error write_failed (701).
+  void save(std::uint64_t size);
+  /// Saves, and makes the file appear under its name. @param size  that it must have. @throws Error write_failed (701); the old
+  /// file is then still there.
   void commit(std::uint64_t size);
 
  private:

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <ranges>
+
+#include "formats/elements/element_walk.hpp"
 
 namespace pcbmesh::formats {
 
@@ -17,12 +20,7 @@ using mesh::ElementKind;
 
 constexpr std::array<std::uint8_t, 12> types{5, 9, 10, 14, 13, 12, 22, 23, 28, 24, 26, 32};
 
-constexpr std::array<std::uint8_t, 18> same{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17};
 constexpr std::array<std::uint8_t, 6> turned_wedge{0, 2, 1, 3, 5, 4};
-// Edges 23 and 13 stand the other way round in Gmsh.
-constexpr std::array<std::uint8_t, 10> tetrahedron10{0, 1, 2, 3, 4, 5, 6, 7, 9, 8};
-// Edges 01 12 20 34 45 53 03 14 25, then faces 0143 1254 2035; a wedge of 15 nodes is the first part of it.
-constexpr std::array<std::uint8_t, 18> wedge18{0, 1, 2, 3, 4, 5, 6, 9, 7, 12, 14, 13, 8, 10, 11, 15, 17, 16};
 
 }  // namespace
 
@@ -37,15 +35,12 @@ std::optional<ElementKind> element_kind(int cell_type) {
 }
 
 std::span<const std::uint8_t> node_order(ElementKind kind, VtkWedge wedge) {
-  const auto count = static_cast<std::size_t>(mesh::nodes_of(kind));
   if (kind == ElementKind::wedge && wedge == VtkWedge::legacy) return turned_wedge;
-  if (kind == ElementKind::tetrahedron10) return tetrahedron10;
-  if (kind == ElementKind::wedge15 || kind == ElementKind::wedge18) return std::span(wedge18).first(count);
-  return std::span(same).first(count);
+  return formats::node_order(kind, NodeOrder::vtk);
 }
 
 bool is_identity(std::span<const std::uint8_t> order) {
-  return std::ranges::equal(order, std::span(same).first(order.size()));
+  return std::ranges::equal(order, std::views::iota(std::size_t{0}, order.size()));
 }
 
 }  // namespace vtk

@@ -43,7 +43,7 @@ class Writer {
         index_bytes_(vtk::index_bytes(cells_, options, file)),
         file_(file, {expected_bytes(), options.compression != Compression::none, options.num_threads}),
         meter_(progress, num_items()) {}
-  HeavyFile write();
+  void write(const HeavyVisit& before_it_appears);
 
  private:
   [[nodiscard]] std::uint64_t expected_bytes() const;
@@ -205,7 +205,7 @@ void Writer::write_faces(HeavyFile& out) {
   out.faces.push_back(std::move(grid));
 }
 
-HeavyFile Writer::write() {
+void Writer::write(const HeavyVisit& before_it_appears) {
   file_.make_group("/mesh");
   write_vtkhdf();
   write_tables();
@@ -216,18 +216,19 @@ HeavyFile Writer::write() {
   write_cells(out);
   write_faces(out);
   progress_.check();
+  file_.save();
+  if (before_it_appears) before_it_appears(out);
   file_.commit();
-  return out;
 }
 
 }  // namespace
 
-HeavyFile write_heavy(mesh::MeshSource& source, const std::filesystem::path& file, const WriteMeshOptions& options,
-                      const Progress& progress) {
+void write_heavy(mesh::MeshSource& source, const std::filesystem::path& file, const WriteMeshOptions& options,
+                 const Progress& progress, const HeavyVisit& before_it_appears) {
   if (options.compression == Compression::lz4)
     throw Error(ErrorCode::usage, "HDF5 files are packed with zlib alone; choose zlib, or a VTU file for LZ4",
                 {.file = file.string()});
-  return Writer(source, file, options, progress).write();
+  Writer(source, file, options, progress).write(before_it_appears);
 }
 
 }  // namespace pcbmesh::formats::vtkhdf

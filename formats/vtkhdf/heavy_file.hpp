@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -30,7 +31,10 @@ struct HeavyFile {
 /// Writes one HDF5 file that VTK reads as VTKHDF (cells in file order) and XDMF files point into (/mesh: one data set for
 /// each cell kind, all tagged faces in one). Points are stored once and linked; so are the cell arrays where all cells are of
 /// one kind. Wedges: the chosen order in /VTKHDF, always Gmsh's in /mesh.
-HeavyFile write_heavy(mesh::MeshSource& source, const std::filesystem::path& file, const WriteMeshOptions& options,
-                      const Progress& progress);
+/// @param before_it_appears  sees what the file holds when it is whole on the disk and not yet under its name: files that point
+/// into it are made here, so that all appear at one stroke.
+using HeavyVisit = std::function<void(const HeavyFile&)>;
+void write_heavy(mesh::MeshSource& source, const std::filesystem::path& file, const WriteMeshOptions& options,
+                 const Progress& progress, const HeavyVisit& before_it_appears = {});
 
 }  // namespace pcbmesh::formats::vtkhdf

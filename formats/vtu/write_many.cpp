@@ -5,10 +5,11 @@
 
 #include <algorithm>
 #include <string>
-#include <system_error>
+#include <string_view>
 #include <vector>
 
 #include "formats/sink/file_sink.hpp"
+#include "formats/sink/folder_sink.hpp"
 #include "formats/vtk/piece.hpp"
 #include "formats/vtu/write_vtu.hpp"
 #include "pcbmesh/base/error.hpp"
@@ -16,34 +17,24 @@
 namespace pcbmesh::formats::vtu {
 namespace {
 
-/// Folder "board" beside "board.pvtu" for the files it lists; one that is still empty goes again if anything fails.
-class PartsFolder {
- public:
-  explicit PartsFolder(const std::filesystem::path& file) : path_(file) {
-    path_.replace_extension();
-    if (path_ == file)
-      throw Error(ErrorCode::usage, "a file without ending leaves no name for the folder of its parts",
-                  {.file = file.string()});
-    std::error_code why;
-    std::filesystem::create_directory(path_, why);
-    if (why || !std::filesystem::is_directory(path_))
-      throw Error(ErrorCode::write_failed,
-                  fmt::format("can't make a folder for the parts{}", why ? ": " + why.message() : ", a file has its name"),
-                  {.file = path_.string()});
-  }
-  ~PartsFolder() {
-    std::error_code ignored;
-    std::filesystem::remove(path_, ignored);  // refused by the system unless the folder is empty
-  }
-  PartsFolder(const PartsFolder&) = delete;
-  PartsFolder& operator=(const PartsFolder&) = delete;
-  [[nodiscard]] std::filesystem::path file(const std::string& name) const { return path_ / name; }
-  /// As the listing file names it.
-  [[nodiscard]] std::string listed(const std::string& name) const { return path_.filename().string() + "/" + name; }
+/// Folder "board_pvtu" beside "board.pvtu" for the files it lists.
+std::filesystem::path folder_of(const std::filesystem::path& file) {
+  const std::string ending = file.extension().string();
+  if (ending.empty())
+    throw Error(ErrorCode::usage, "a file without ending leaves no name for the folder of its parts", {.file = file.string()});
+  std::filesystem::path folder = file;
+  folder.replace_extension();
+  folder += "_" + ending.substr(1);
+  return folder;
+}
 
- private:
-  std::filesystem::path path_;
-};
+/// As this file names them: "12.vtu", "volume_3.vtu", "face_3.vtu".
+bool is_piece(std::string_view name) {
+  for (const std::string_view start : {"volume_", "face_"})
+    if (name.starts_with(start)) name.remove_prefix(start.size());
+  const std::size_t digits = std::min(name.find_first_not_of("0123456789"), name.size());
+  return digits > 0 && name.substr(digits) == ".vtu";
+}
 
 /// Text as an attribute's value.
 std::string escaped(std::string_view text) {
@@ -73,7 +64,9 @@ void write_parallel(mesh::MeshSource& source, const std::filesystem::path& file,
                     const Progress& progress) {
   if (options.num_parts < 1)
     throw Error(ErrorCode::usage, fmt::format("{} parts; at least 1 is needed", options.num_parts), {.file = file.string()});
-  const PartsFolder folder(file);
+  const std::filesystem::path folder_path = folder_of(file);
+  FolderSink folder(folder_path, is_piece);
+  const std::string prefix = folder_path.filename().string() + "/";
   const double scale = source.unit_m() / metres_per(options.unit);
   const std::vector<vtk::Run> all = vtk::runs_of(
       source, [&](const mesh::ElementBlock& block) { return options.faces || mesh::dimension_of(block.kind) == 3; });
@@ -100,14 +93,19 @@ void write_parallel(mesh::MeshSource& source, const std::filesystem::path& file,
   for (const ArrayHead& head : heads)
     if (head.section == "CellData") put_array_head(sink, head);
   sink.put("  </PCellData>\n");
-  for (const std::string& name : names) sink.put(fmt::format("  <Piece Source=\"{}\"/>\n", escaped(folder.listed(name))));
+  for (const std::string& name : names) sink.put(fmt::format("  <Piece Source=\"{}\"/>\n", escaped(prefix + name)));
   sink.put(" </PUnstructuredGrid>\n</VTKFile>\n");
+  // The pieces and the list appear one right after the other.
+  sink.save();
+  folder.commit();
   sink.commit();
 }
 
 void write_multiblock(mesh::MeshSource& source, const std::filesystem::path& file, const WriteMeshOptions& options,
                       const Progress& progress) {
-  const PartsFolder folder(file);
+  const std::filesystem::path folder_path = folder_of(file);
+  FolderSink folder(folder_path, is_piece);
+  const std::string prefix = folder_path.filename().string() + "/";
   const double scale = source.unit_m() / metres_per(options.unit);
   struct Block {
     std::string group, file;
@@ -122,7 +120,7 @@ void write_multiblock(mesh::MeshSource& source, const std::filesystem::path& fil
         false, progress);
     const std::string name = fmt::format("{}_{}.vtu", is_volume ? "volume" : "face", group.tag);
     write_vtu(piece, folder.file(name), options, scale, progress);
-    kinds[is_volume ? 0 : 1].push_back({group.name, folder.listed(name)});
+    kinds[is_volume ? 0 : 1].push_back({group.name, prefix + name});
   }
   FileSink sink(file);
   sink.put(
@@ -137,6 +135,9 @@ void write_multiblock(mesh::MeshSource& source, const std::filesystem::path& fil
     sink.put("  </Block>\n");
   }
   sink.put(" </vtkMultiBlockDataSet>\n</VTKFile>\n");
+  // The pieces and the list appear one right after the other.
+  sink.save();
+  folder.commit();
   sink.commit();
 }
 

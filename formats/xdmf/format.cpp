@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "formats/sink/file_sink.hpp"
 #include "formats/vtkhdf/heavy_file.hpp"
@@ -33,10 +35,11 @@ class LightFile {
   void put_grid(std::string_view name, const HeavyGrid& grid);
   void begin_collection() { sink_.put("  <Grid Name=\"board\" GridType=\"Collection\" CollectionType=\"Spatial\">\n"); }
   void end_collection() { sink_.put("  </Grid>\n"); }
-  void commit() {
+  void save() {
     sink_.put(" </Domain>\n</Xdmf>\n");
-    sink_.commit();
+    sink_.save();
   }
+  void commit() { sink_.commit(); }
 
  private:
   void put_item(const std::string& dimensions, std::string_view type, std::size_t precision, const std::string& path) {
@@ -81,27 +84,34 @@ void write(mesh::MeshSource& source, const std::filesystem::path& file, const Wr
            const Progress& progress) {
   const std::string extension = file.extension().string();
   const std::filesystem::path heavy_path = beside(file, ".vtkhdf");
-  // Numbers first: a light file that is there can be read.
-  const HeavyFile heavy = vtkhdf::write_heavy(source, heavy_path, options, progress);
-  const auto put_cells = [&](LightFile& out) {
-    for (const HeavyGrid& grid : heavy.cells) out.put_grid(heavy.cells.size() == 1 ? "cells" : grid.topology, grid);
+  std::vector<std::unique_ptr<LightFile>> light;
+  const auto write_light = [&](const HeavyFile& heavy) {
+    const auto put_cells = [&](LightFile& out) {
+      for (const HeavyGrid& grid : heavy.cells) out.put_grid(heavy.cells.size() == 1 ? "cells" : grid.topology, grid);
+    };
+    const auto begin = [&](const std::filesystem::path& name) -> LightFile& {
+      return *light.emplace_back(std::make_unique<LightFile>(name, heavy_path, heavy));
+    };
+    if (!heavy.faces.empty()) {
+      LightFile& faces = begin(beside(file, "_faces" + extension));
+      faces.put_grid("faces", heavy.faces.front());
+      faces.save();
+    }
+    LightFile& all = begin(beside(file, "_paraview" + extension));
+    all.begin_collection();
+    put_cells(all);
+    for (const HeavyGrid& grid : heavy.faces) all.put_grid("faces", grid);
+    all.end_collection();
+    all.save();
+    LightFile& cells = begin(file);
+    if (heavy.cells.size() > 1) cells.begin_collection();
+    put_cells(cells);
+    if (heavy.cells.size() > 1) cells.end_collection();
+    cells.save();
   };
-  if (!heavy.faces.empty()) {
-    LightFile faces(beside(file, "_faces" + extension), heavy_path, heavy);
-    faces.put_grid("faces", heavy.faces.front());
-    faces.commit();
-  }
-  LightFile all(beside(file, "_paraview" + extension), heavy_path, heavy);
-  all.begin_collection();
-  put_cells(all);
-  for (const HeavyGrid& grid : heavy.faces) all.put_grid("faces", grid);
-  all.end_collection();
-  all.commit();
-  LightFile cells(file, heavy_path, heavy);
-  if (heavy.cells.size() > 1) cells.begin_collection();
-  put_cells(cells);
-  if (heavy.cells.size() > 1) cells.end_collection();
-  cells.commit();
+  // Numbers appear first: a light file that is there can be read.
+  vtkhdf::write_heavy(source, heavy_path, options, progress, write_light);
+  for (const auto& out : light) out->commit();
 }
 
 }  // namespace

@@ -1,24 +1,36 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "src/cli/mesh_input.hpp"
 
-#include <fmt/format.h>
-
-#include "pcbmesh/base/error.hpp"
+#include "pcbmesh/base/units.hpp"
 #include "pcbmesh/formats/native_mesh.hpp"
 #include "pcbmesh/formats/registry.hpp"
 
 namespace pcbmesh::cli {
 
-std::optional<mesh::PrismMesh> read_if_mesh(const std::filesystem::path& file, const Progress& progress) {
+std::optional<MeshInput> read_if_mesh(const std::filesystem::path& file, const std::string& input_unit,
+                                      const Progress& progress) {
   const formats::MeshFormat* format = formats::find_mesh_format(file);
   if (format == nullptr) return std::nullopt;
-  if (format->name == "native") return formats::read_prism_mesh(file, progress);
-  throw Error(
-      ErrorCode::usage,
-      fmt::format("a {} file holds cells, not layers, and can't be drawn here; draw the board itself, or a .pcbmesh file "
-                  "written beside it (mesh ... -o {}.pcbmesh)",
-                  format->name, file.stem().string()),
-      {.file = file.string()});
+  MeshInput out;
+  if (format->name == "native") {
+    out.prisms = formats::read_prism_mesh(file, progress);
+    return out;
+  }
+  out.cells = std::make_shared<mesh::MeshData>(formats::read_mesh(file, {}, progress));
+  std::filesystem::path tags = file;
+  if (tags.extension() == ".gz" || tags.extension() == ".xz") tags.replace_extension();
+  tags.replace_extension(".tags.json");
+  if (std::filesystem::exists(tags)) out.tags = validation::read_expectation(tags.string());
+  if (!input_unit.empty()) {
+    out.unit_m = metres_per(parse_length_unit(input_unit));
+    out.unit_source = input_unit + ", as told";
+  } else if (out.tags) {
+    out.unit_m = out.tags->unit_m;
+    out.unit_source = "from " + tags.filename().string();
+  } else {
+    out.unit_source = "m, assumed; --input-unit says otherwise";
+  }
+  return out;
 }
 
 }  // namespace pcbmesh::cli

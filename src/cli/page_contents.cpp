@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <optional>
 
 #include "src/cli/terminal.hpp"
 
@@ -45,6 +47,20 @@ std::vector<std::pair<std::string, std::string>> facts(const MeshRun& run) {
   return out;
 }
 
+/// What policy matched weighed up.
+std::optional<view::FrontPlot> front(const MeshRun& run) {
+  if (!run.result.match) return {};
+  const pipeline::MatchResult& match = *run.result.match;
+  view::FrontPlot out;
+  for (const layering::FrontPoint& p : match.front) out.front.push_back({p.prisms, p.choice.quality.least()});
+  if (match.knee < out.front.size()) out.knee = out.front[match.knee];
+  for (const pipeline::MatchStep& step : match.steps)
+    out.made.push_back({static_cast<double>(step.prisms), std::min(step.mean_prism, step.volume_weighted_prism)});
+  out.chosen = match.chosen;
+  out.goal = run.result.resolved.match.target_quality;
+  return out;
+}
+
 }  // namespace
 
 view::PageContents page_contents(const MeshRun& run, double unit_m) {
@@ -61,6 +77,7 @@ view::PageContents page_contents(const MeshRun& run, double unit_m) {
                            places(entry, run.result.mesh)});
   for (view::PagePlace& worst : view::places_of(run.quality)) page.places.push_back(std::move(worst));
   page.quality = run.quality;
+  page.front = front(run);
   return page;
 }
 

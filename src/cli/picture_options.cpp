@@ -46,42 +46,41 @@ std::int32_t find_name(const std::string& name, std::span<const std::string> tab
   return static_cast<std::int32_t>(found - table.begin());
 }
 
-std::vector<std::string> material_names(const mesh::PrismMesh& mesh) {
-  std::vector<std::string> names;
-  for (const board::Material& m : mesh.materials()) names.push_back(m.name);
-  return names;
-}
-
-/// Hides groups of the layer, material or net of this name.
-void hide(std::vector<char>& hidden, const std::string& name, const mesh::PrismMesh& mesh) {
+/// Hides groups of the layer, material or net of this name, or the group itself.
+void hide(std::vector<char>& hidden, const std::string& name, const ShownNames& names) {
   bool found = false;
+  const auto is_named = [&](const std::vector<std::string>& table, std::int32_t i) {
+    return i >= 0 && table[index(i)] == name;
+  };
   for (std::size_t i = 0; i < hidden.size(); ++i) {
-    const mesh::VolumeTag& tag = mesh.volume_tags()[i];
-    if (mesh.layers()[index(tag.layer)] != name && mesh.materials()[index(tag.material)].name != name &&
-        (tag.net < 0 || mesh.nets()[index(tag.net)] != name))
+    const ShownNames::Group& group = names.groups[i];
+    if (group.name != name && !is_named(names.layers, group.layer) && !is_named(names.materials, group.material) &&
+        !is_named(names.nets, group.net))
       continue;
     hidden[i] = 1;
     found = true;
   }
   if (found) return;
-  std::vector<std::string> names = material_names(mesh);
-  names.insert(names.end(), mesh.layers().begin(), mesh.layers().end());
-  names.insert(names.end(), mesh.nets().begin(), mesh.nets().end());
+  std::vector<std::string> all = names.materials;
+  all.insert(all.end(), names.layers.begin(), names.layers.end());
+  all.insert(all.end(), names.nets.begin(), names.nets.end());
+  for (const ShownNames::Group& group : names.groups) all.push_back(group.name);
   throw Error(ErrorCode::name_unknown,
-              fmt::format("--hide: the mesh has no layer, material or net '{}'{}", name, did_you_mean(name, names)));
+              fmt::format("--hide: the mesh has no layer, material, net or group '{}'{}", name, did_you_mean(name, all)));
 }
 
-std::vector<char> hidden_groups(const PictureFlags& flags, const mesh::PrismMesh& mesh) {
-  std::vector<char> hidden = flags.show_air ? std::vector<char>(mesh.volume_tags().size(), 0) : view::air_groups(mesh);
+std::vector<char> hidden_groups(const PictureFlags& flags, const ShownNames& names) {
+  std::vector<char> hidden;
+  for (const ShownNames::Group& group : names.groups) hidden.push_back(group.is_air && !flags.show_air ? 1 : 0);
   std::vector<std::int32_t> layers, nets;
-  for (const std::string& name : split_all(flags.layers)) layers.push_back(find_name(name, mesh.layers(), "layer"));
-  for (const std::string& name : split_all(flags.show_nets)) nets.push_back(find_name(name, mesh.nets(), "net"));
+  for (const std::string& name : split_all(flags.layers)) layers.push_back(find_name(name, names.layers, "layer"));
+  for (const std::string& name : split_all(flags.show_nets)) nets.push_back(find_name(name, names.nets, "net"));
   for (std::size_t i = 0; i < hidden.size(); ++i) {
-    const mesh::VolumeTag& tag = mesh.volume_tags()[i];
-    if (!layers.empty() && std::find(layers.begin(), layers.end(), tag.layer) == layers.end()) hidden[i] = 1;
-    if (!nets.empty() && std::find(nets.begin(), nets.end(), tag.net) == nets.end()) hidden[i] = 1;
+    const ShownNames::Group& group = names.groups[i];
+    if (!layers.empty() && std::find(layers.begin(), layers.end(), group.layer) == layers.end()) hidden[i] = 1;
+    if (!nets.empty() && std::find(nets.begin(), nets.end(), group.net) == nets.end()) hidden[i] = 1;
   }
-  for (const std::string& name : split_all(flags.hidden)) hide(hidden, name, mesh);
+  for (const std::string& name : split_all(flags.hidden)) hide(hidden, name, names);
   return hidden;
 }
 
@@ -162,21 +161,49 @@ std::shared_ptr<PictureFlags> add_picture_flags(CLI::App& command) {
   command.add_option("--section", f->section, "Cut at a plane, e.g. y=12mm; y=12mm+ or y=12mm- says which side stays")
       ->group(look);
   constexpr const char* what = "What is shown";
-  command.add_option("--colour,--color", f->colour, "material (default), net, layer, group, tag, q_p, q_t or size")
+  command
+      .add_option("--colour,--color", f->colour,
+                  "material (default; of cells without names: group), net, layer, group, tag, q_p, q_t or size")
       ->group(what);
   command.add_option("--edges", f->edges, "Mesh edges: fading (default: not where cells are tiny), on or off")
       ->check(CLI::IsMember({"fading", "on", "off"}))
       ->group(what);
   command.add_option("--layers", f->layers, "Only these layers, e.g. F.Cu,B.Cu")->group(what);
   command.add_option("--only-nets", f->show_nets, "Only these nets")->group(what);
-  command.add_option("--hide", f->hidden, "Hide layers, materials or nets by name, e.g. F.Mask")->group(what);
+  command.add_option("--hide", f->hidden, "Hide layers, materials, nets or groups by name, e.g. F.Mask")->group(what);
   command.add_option("--show-box", f->box, "Only cells in a box xmin,ymin,xmax,ymax")->group(what);
   command.add_flag("--show-air", f->show_air, "Air too; it is hidden otherwise")->group(what);
   command.add_option("--background", f->background, "light (default), dark, transparent or #rrggbb")->group(what);
   return f;
 }
 
-view::PictureOptions picture_options(const PictureFlags& flags, const mesh::PrismMesh& mesh) {
+ShownNames shown_names(const mesh::PrismMesh& mesh) {
+  ShownNames out{{mesh.layers().begin(), mesh.layers().end()}, {}, {mesh.nets().begin(), mesh.nets().end()}, {}};
+  for (const board::Material& m : mesh.materials()) out.materials.push_back(m.name);
+  const std::vector<char> air = view::air_groups(mesh);
+  for (std::size_t i = 0; i < air.size(); ++i) {
+    const mesh::VolumeTag& tag = mesh.volume_tags()[i];
+    out.groups.push_back({tag.name, tag.layer, tag.material, tag.net, air[i] != 0});
+  }
+  return out;
+}
+
+ShownNames shown_names(const view::CellMesh& mesh) {
+  ShownNames out{{mesh.layers().begin(), mesh.layers().end()}, {}, {mesh.nets().begin(), mesh.nets().end()}, {}};
+  for (const board::Material& m : mesh.materials()) out.materials.push_back(m.name);
+  for (const view::CellGroup& g : mesh.groups()) out.groups.push_back({g.name, g.layer, g.material, g.net, g.is_air});
+  // Where nothing but air is there, air is what is to be seen.
+  if (std::all_of(out.groups.begin(), out.groups.end(), [](const ShownNames::Group& g) { return g.is_air; }))
+    for (ShownNames::Group& g : out.groups) g.is_air = false;
+  return out;
+}
+
+std::optional<std::array<double, 4>> show_box(const PictureFlags& flags) {
+  if (flags.box.empty()) return {};
+  return parse_show_box(flags.box);
+}
+
+view::PictureOptions picture_options(const PictureFlags& flags, const ShownNames& names) {
   view::PictureOptions o;
   o.camera = view::parse_camera(flags.view);
   if (flags.azimuth != unset) o.camera.azimuth_deg = flags.azimuth;
@@ -191,14 +218,14 @@ view::PictureOptions picture_options(const PictureFlags& flags, const mesh::Pris
   }
   o.explode = flags.explode;
   if (flags.thickness > 0) o.thickness_scale = flags.thickness;
-  o.colour = view::parse_colour_mode(flags.colour);
+  if (!flags.colour.empty()) o.colour = view::parse_colour_mode(flags.colour);
   if (flags.edges == "on") o.edges = view::Edges::on;
   if (flags.edges == "off") o.edges = view::Edges::off;
   o.background = parse_background(flags.background);
-  o.visibility.hidden_groups = hidden_groups(flags, mesh);
+  o.visibility.hidden_groups = hidden_groups(flags, names);
   if (flags.explode > 0) o.visibility.mode = view::SkinMode::layers;
   if (!flags.section.empty()) o.visibility.section = parse_section(flags.section, o.camera);
-  if (!flags.box.empty()) o.visibility.box_m = parse_show_box(flags.box);
+  o.visibility.box_m = show_box(flags);
   return o;
 }
 

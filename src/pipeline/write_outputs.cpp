@@ -79,17 +79,17 @@ OutputResult write_outputs(const MeshBoardResult& result, const OutputOptions& o
   OutputResult out;
   const std::filesystem::path tags = file_beside(options.meshes.front(), ".tags.json"),
                               study = file_beside(options.meshes.front(), ".resolved.json");
-  // The contract first: whoever sees the mesh finds its meaning beside it.
   const auto num_volumes = static_cast<std::int32_t>(result.mesh.volume_tags().size());
   ElementSource elements(result);
   out.second_order = elements.second_order();
-  formats::tags_json::write_tags(result.mesh, tags, options.write.unit, options.write.one_number_space ? num_volumes : 0,
-                                 &elements.source());
-  write_text_file(study, study::to_json(result.resolved));
+  // The meshes first: where one can't be written, an older mesh keeps the contract that belongs to it.
   for (const std::filesystem::path& file : options.meshes) {
     formats::write_mesh(elements.source(), file, options.write, options.format, progress);
     out.files.push_back(file.string());
   }
+  formats::tags_json::write_tags(result.mesh, tags, options.write.unit, options.write.one_number_space ? num_volumes : 0,
+                                 &elements.source());
+  write_text_file(study, study::to_json(result.resolved));
   out.files.push_back(tags.string());
   out.files.push_back(study.string());
   if (!options.check) return out;

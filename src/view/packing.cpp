@@ -10,38 +10,8 @@
 namespace pcbmesh::view {
 namespace {
 
-constexpr double grid_steps = 16'777'215;  ///< 2^24 - 1: three bytes, and exact in a float
-
 std::size_t index(std::int32_t i) {
   return static_cast<std::size_t>(i);
-}
-
-/// Appends an array as byte planes: equal high bytes then lie side by side and pack to nearly nothing.
-void put(PackedMesh& out, std::string name, std::span<const std::uint32_t> values) {
-  std::uint32_t all = 0;
-  for (const std::uint32_t v : values) all |= v;
-  const int bytes = all > 0xffffff ? 4 : all > 0xffff ? 3 : all > 0xff ? 2 : 1;
-  out.arrays.push_back({std::move(name), values.size(), bytes});
-  for (int b = 0; b < bytes; ++b) {
-    const std::size_t first = out.bytes.size();
-    out.bytes.resize(first + values.size());
-    char* to = out.bytes.data() + first;
-    for (const std::uint32_t v : values) *to++ = static_cast<char>(v >> (8 * b) & 0xff);
-  }
-}
-
-std::uint32_t zigzag(std::int32_t n) {
-  return (static_cast<std::uint32_t>(n) << 1) ^ static_cast<std::uint32_t>(n >> 31);
-}
-
-void put_differences(PackedMesh& out, std::string name, std::span<const std::int32_t> values) {
-  std::vector<std::uint32_t> differences(values.size());
-  std::int32_t last = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    differences[i] = zigzag(values[i] - last);
-    last = values[i];
-  }
-  put(out, std::move(name) + "+", differences);
 }
 
 void put_points(PackedMesh& out, const mesh::PlanarMesh& planar) {
@@ -60,8 +30,8 @@ void put_points(PackedMesh& out, const mesh::PlanarMesh& planar) {
     x.push_back(static_cast<std::int32_t>(std::lround((p[0] - min_x) / out.step_m)));
     y.push_back(static_cast<std::int32_t>(std::lround((p[1] - min_y) / out.step_m)));
   }
-  put_differences(out, "x", x);
-  put_differences(out, "y", y);
+  out.put_differences("x", x);
+  out.put_differences("y", y);
 }
 
 void put_triangles(PackedMesh& out, const mesh::PlanarMesh& planar) {
@@ -72,9 +42,9 @@ void put_triangles(PackedMesh& out, const mesh::PlanarMesh& planar) {
     second.push_back(zigzag(t[1] - t[0]));
     third.push_back(zigzag(t[2] - t[0]));
   }
-  put_differences(out, "corner0", first);
-  put(out, "corner1", second);
-  put(out, "corner2", third);
+  out.put_differences("corner0", first);
+  out.put("corner1", second);
+  out.put("corner2", third);
 }
 
 void put_columns(PackedMesh& out, const mesh::PrismMesh& mesh) {
@@ -93,7 +63,7 @@ void put_columns(PackedMesh& out, const mesh::PrismMesh& mesh) {
     }
     columns.push_back(static_cast<std::uint32_t>(id));
   }
-  put(out, "column", columns);
+  out.put("column", columns);
 }
 
 void put_boundary(PackedMesh& out, const mesh::PrismMesh& mesh) {
@@ -104,9 +74,9 @@ void put_boundary(PackedMesh& out, const mesh::PrismMesh& mesh) {
     places.push_back(static_cast<std::uint32_t>(cap.level) * 2 + (cap.up ? 1 : 0));
     items.push_back(cap.triangle);
   }
-  put(out, "cap_tag", tags);
-  put(out, "cap_place", places);
-  put_differences(out, "cap_triangle", items);
+  out.put("cap_tag", tags);
+  out.put("cap_place", places);
+  out.put_differences("cap_triangle", items);
   tags.clear();
   places.clear();
   items.clear();
@@ -117,13 +87,41 @@ void put_boundary(PackedMesh& out, const mesh::PrismMesh& mesh) {
     items.push_back(wall.a);
     ends.push_back(zigzag(wall.b - wall.a));
   }
-  put(out, "wall_tag", tags);
-  put(out, "wall_slab", places);
-  put_differences(out, "wall_a", items);
-  put(out, "wall_b", ends);
+  out.put("wall_tag", tags);
+  out.put("wall_slab", places);
+  out.put_differences("wall_a", items);
+  out.put("wall_b", ends);
 }
 
 }  // namespace
+
+/// Byte planes: equal high bytes lie side by side and pack to nearly nothing.
+void PackedArrays::put(std::string name, std::span<const std::uint32_t> values) {
+  std::uint32_t all = 0;
+  for (const std::uint32_t v : values) all |= v;
+  const int width = all > 0xffffff ? 4 : all > 0xffff ? 3 : all > 0xff ? 2 : 1;
+  arrays.push_back({std::move(name), values.size(), width});
+  for (int b = 0; b < width; ++b) {
+    const std::size_t first = bytes.size();
+    bytes.resize(first + values.size());
+    char* to = bytes.data() + first;
+    for (const std::uint32_t v : values) *to++ = static_cast<char>(v >> (8 * b) & 0xff);
+  }
+}
+
+void PackedArrays::put_differences(std::string name, std::span<const std::int32_t> values) {
+  std::vector<std::uint32_t> differences(values.size());
+  std::int32_t last = 0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    differences[i] = zigzag(values[i] - last);
+    last = values[i];
+  }
+  put(std::move(name) + "+", differences);
+}
+
+std::uint32_t zigzag(std::int32_t n) {
+  return (static_cast<std::uint32_t>(n) << 1) ^ static_cast<std::uint32_t>(n >> 31);
+}
 
 PackedMesh pack(const mesh::PrismMesh& mesh) {
   PackedMesh out;

@@ -20,7 +20,6 @@ constexpr std::array<std::string_view, 8> mode_titles{
     "Material", "Net", "Layer", "Volume group", "Face tag", "Prism quality q_p", "Triangle quality q_t", "Longest edge, mm"};
 constexpr double copper_like_s_per_m = 1e5;
 constexpr double golden_angle = 0.38196601125;
-constexpr Rgb untagged{150, 156, 163}, port_colour{224, 36, 130}, sheet_colour{205, 127, 60};
 
 std::size_t index(std::int32_t i) {
   return static_cast<std::size_t>(i);
@@ -105,8 +104,8 @@ Rgb ramp_at(double x) {
   return mix(ramp()[i], ramp()[i + 1], at - static_cast<double>(i));
 }
 
-Rgb material_colour(const mesh::PrismMesh& mesh, std::int32_t material) {
-  const board::Material& m = mesh.materials()[index(material)];
+Rgb material_colour(std::span<const board::Material> materials, std::int32_t material) {
+  const board::Material& m = materials[index(material)];
   if (is_conductor(m)) return contains(m.name, "gold") ? Rgb{222, 178, 60} : Rgb{205, 127, 60};
   if (is_mask(m)) return {32, 112, 72};
   if (m.eps_r == 1 && m.tan_delta == 0) return {186, 214, 235};
@@ -115,7 +114,7 @@ Rgb material_colour(const mesh::PrismMesh& mesh, std::int32_t material) {
       {{201, 186, 126}, {158, 172, 140}, {214, 196, 160}, {150, 170, 190}, {190, 160, 180}, {170, 190, 160}}};
   std::size_t rank = 0;
   for (std::int32_t i = 0; i < material; ++i) {
-    const board::Material& other = mesh.materials()[index(i)];
+    const board::Material& other = materials[index(i)];
     if (!is_conductor(other) && !is_mask(other) && !(other.eps_r == 1 && other.tan_delta == 0)) ++rank;
   }
   return laminates[rank % laminates.size()];
@@ -134,6 +133,14 @@ Rgb layer_colour(std::int32_t layer, std::size_t num_layers) {
 
 Rgb group_colour(std::int32_t group) {
   return from_hsl(std::fmod(0.55 + golden_angle * group, 1.0), 0.5, 0.56);
+}
+
+Rgb quiet(Rgb colour) {
+  return mix(colour, Rgb{205, 208, 212}, 0.7);
+}
+
+double film_share(ColourMode mode) {
+  return mode == ColourMode::net ? 0.75 : 0.5;
 }
 
 double light_on(const std::array<double, 3>& n) {
@@ -170,9 +177,7 @@ Paint::Paint(const mesh::PrismMesh& mesh, ColourMode mode) : mesh_(mesh), mode_(
     is_conductor_.push_back(is_conductor(material) ? 1 : 0);
     switch (mode) {
       case ColourMode::net:
-        // What belongs to no net stays in the background, in its material's colour.
-        groups_.push_back(tag.net >= 0 ? net_colour(tag.net)
-                                       : mix(material_colour(mesh, tag.material), Rgb{205, 208, 212}, 0.7));
+        groups_.push_back(tag.net >= 0 ? net_colour(tag.net) : quiet(material_colour(mesh.materials(), tag.material)));
         break;
       case ColourMode::layer:
         groups_.push_back(layer_colour(tag.layer, mesh.layers().size()));
@@ -181,7 +186,7 @@ Paint::Paint(const mesh::PrismMesh& mesh, ColourMode mode) : mesh_(mesh), mode_(
         groups_.push_back(group_colour(static_cast<std::int32_t>(i)));
         break;
       default:
-        groups_.push_back(material_colour(mesh, tag.material));
+        groups_.push_back(material_colour(mesh.materials(), tag.material));
     }
   }
   if (mode == ColourMode::face_tag) boundary_.emplace_back(mesh_);
@@ -194,23 +199,26 @@ Paint::Paint(const mesh::PrismMesh& mesh, ColourMode mode) : mesh_(mesh), mode_(
   }
 }
 
-double Paint::value_of(const SkinFace& face) const {
+double Paint::value_of(const SkinFace& face, std::int32_t sublayer) const {
   if (mode_ == ColourMode::size) return longest_edge_mm(mesh_.planar(), face.triangle);
   const auto squared = mesh_.planar().squared_edges_m2(face.triangle);
   const double area = mesh_.planar().area_m2(face.triangle), beta = squared[0] + squared[1] + squared[2];
   if (mode_ == ColourMode::triangle_quality) return layering::triangle_quality(area, beta);
-  return layering::prism_quality(area, beta, mesh_.plan().height_m(mesh_.plan().first_sublayer(face.slab)));
+  return layering::prism_quality(area, beta, mesh_.plan().height_m(sublayer));
 }
 
-Rgb Paint::of(const SkinFace& face) const {
+Rgb Paint::of(const SkinFace& face, std::optional<std::int32_t> sublayer) const {
   if (is_continuous(mode_)) {
-    const double value = value_of(face);
+    const mesh::LayerPlan& plan = mesh_.plan();
+    const std::int32_t at_face =
+        face.kind == SkinFaceKind::up ? plan.first_sublayer(face.slab + 1) - 1 : plan.first_sublayer(face.slab);
+    const double value = value_of(face, sublayer.value_or(at_face));
     if (mode_ != ColourMode::size) return ramp_at((value - range_[0]) / (range_[1] - range_[0]));
     return ramp_at(range_[1] > range_[0] ? std::log(value / range_[0]) / std::log(range_[1] / range_[0]) : 0.5);
   }
   if (mode_ == ColourMode::face_tag) {
     const std::int32_t tag = boundary_.front().of(face);
-    return tag < 0 ? untagged : group_colour(tag);
+    return tag < 0 ? no_value : group_colour(tag);
   }
   const Rgb own = groups_[index(face.group)];
   if (is_mask_[index(face.group)] == 0) return own;
@@ -221,7 +229,7 @@ Rgb Paint::of(const SkinFace& face) const {
   if (behind < 0 || behind >= mesh_.plan().num_slabs()) return own;
   const std::int32_t group = mesh_.tag_of(behind, face.triangle);
   if (group < 0) return own;
-  return is_conductor_[index(group)] != 0 ? mix(own, groups_[index(group)], mode_ == ColourMode::net ? 0.75 : 0.5) : own;
+  return is_conductor_[index(group)] != 0 ? mix(own, groups_[index(group)], film_share(mode_)) : own;
 }
 
 std::optional<Rgb> Paint::of_tag(std::int32_t face_tag) const {
@@ -242,7 +250,7 @@ std::vector<LegendEntry> Paint::legend(const std::vector<char>& hidden_groups) c
   if (mode_ == ColourMode::face_tag) {
     for (std::size_t i = 0; i < mesh_.face_tags().size(); ++i)
       out.push_back({mesh_.face_tags()[i].name, group_colour(static_cast<std::int32_t>(i))});
-    out.push_back({"no tag", untagged});
+    out.push_back({"no tag", no_value});
     return out;
   }
   for (std::size_t i = 0; i < mesh_.volume_tags().size(); ++i) {

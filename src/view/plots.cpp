@@ -233,4 +233,63 @@ std::string optimal_heights_svg(const mesh::PrismMesh& mesh, const layering::Hei
   return plot.finish();
 }
 
+std::string pareto_front_svg(const FrontPlot& front) {
+  Plot plot("Pareto front: quality over prisms");
+  std::vector<FrontPlot::Point> all = front.front;
+  all.insert(all.end(), front.made.begin(), front.made.end());
+  if (all.empty()) return plot.finish();
+  double low = all.front().prisms, high = low, worst = all.front().quality, best = worst;
+  for (const FrontPlot::Point& p : all) {
+    low = std::min(low, p.prisms);
+    high = std::max(high, p.prisms);
+    worst = std::min(worst, p.quality);
+    best = std::max(best, p.quality);
+  }
+  if (front.goal) best = std::max(best, *front.goal);
+  low /= 1.15;
+  high *= 1.15;
+  const double margin = std::max(0.08 * (best - worst), 0.004), bottom_q = worst - margin, top_q = best + 2 * margin;
+  const auto x_of = [&](double n) { return left + inner_width * std::log(n / low) / std::log(high / low); };
+  const auto y_of = [&](double q) { return height - bottom - inner_height * (q - bottom_q) / (top_q - bottom_q); };
+  for (const double at : round_ticks(bottom_q, top_q)) plot.y_tick(y_of(at), fmt::format("{:.4g}", at));
+  if (front.goal)
+    plot.put(
+        fmt::format("<path d=\"M{} {:.1f}H{}\" stroke=\"currentColor\" stroke-opacity=\".6\" "
+                    "stroke-dasharray=\"4 3\"><title>goal {:.4g}</title></path>\n",
+                    left, y_of(*front.goal), width - right, *front.goal));
+  std::string path;
+  for (const FrontPlot::Point& p : front.front)
+    path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", x_of(p.prisms), y_of(p.quality));
+  plot.put(fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"2\"><title>predicted front</title></path>\n",
+                       path, bar_colour));
+  for (std::size_t i = 0; i < front.made.size(); ++i) {
+    const FrontPlot::Point& p = front.made[i];
+    const bool is_chosen = i == front.chosen;
+    plot.put(
+        fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\"><title>{}: {:.0f} prisms, quality "
+                    "{:.4f}</title></circle>\n",
+                    x_of(p.prisms), y_of(p.quality), is_chosen ? 5 : 3, is_chosen ? mark_colour : bar_colour,
+                    is_chosen ? "taken" : "tried", p.prisms, p.quality));
+  }
+  if (front.knee)
+    plot.put(
+        fmt::format("<path d=\"M{:.1f} {:.1f}m0 -5l5 5l-5 5l-5 -5z\" fill=\"none\" stroke=\"currentColor\"><title>knee: "
+                    "{:.0f} prisms, quality {:.4f}</title></path>\n",
+                    x_of(front.knee->prisms), y_of(front.knee->quality), front.knee->prisms, front.knee->quality));
+  plot.axes();
+  const double decade = std::floor(std::log10(low));
+  double last = -1e9;
+  for (double power = std::pow(10.0, decade); power <= high; power *= 10)
+    for (const double step : {1.0, 2.0, 5.0}) {
+      const double at = step * power, x = at >= low && at <= high ? x_of(at) : last;
+      if (x < last + 38) continue;
+      plot.x_tick(x, at >= 1e6   ? fmt::format("{:g} M", at / 1e6)
+                     : at >= 1e3 ? fmt::format("{:g} k", at / 1e3)
+                                 : fmt::format("{:g}", at));
+      last = x;
+    }
+  plot.x_label("prisms; line predicted, dots made, large one taken, \u25c7 knee");
+  return plot.finish();
+}
+
 }  // namespace pcbmesh::view

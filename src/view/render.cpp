@@ -1,138 +1,90 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pcbmesh/view/render.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "pcbmesh/base/error.hpp"
-#include "src/view/canvas.hpp"
-#include "src/view/png.hpp"
-#include "src/view/stage.hpp"
+#include "src/view/easel.hpp"
 #include "src/view/svg.hpp"
 
 namespace pcbmesh::view {
 namespace {
 
-constexpr int least_pixels = 16, most_pixels = 16384;
-constexpr double strongest_edge = 0.5;
-/// On-screen size of a cell, pixels: below the first its edges are not drawn, above the second in full.
-constexpr double fades_below = 3, full_above = 14;
 /// Sub-layers of a wall are told apart where they are at least so many pixels high.
 constexpr double least_sublayer_pixels = 3;
-constexpr unsigned all_sides = ~0U;
-constexpr double before_hull = 2e-5;
-
-std::size_t index(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
-
-std::array<double, 3> normal_of(const SkinPolygon& polygon) {
-  const auto& p = polygon.corners;
-  const std::array<double, 3> u{p[1][0] - p[0][0], p[1][1] - p[0][1], p[1][2] - p[0][2]},
-      v{p[2][0] - p[0][0], p[2][1] - p[0][1], p[2][2] - p[0][2]};
-  const std::array<double, 3> n{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-  const double length = std::hypot(n[0], n[1], n[2]);
-  return length > 0 ? std::array{n[0] / length, n[1] / length, n[2] / length} : std::array{0.0, 0.0, 1.0};
-}
-
-double edge_strength(Edges edges, double area_pixels) {
-  if (edges == Edges::off) return 0;
-  if (edges == Edges::on) return strongest_edge;
-  const double size = std::sqrt(2 * area_pixels);
-  return strongest_edge * std::clamp((size - fades_below) / (full_above - fades_below), 0.0, 1.0);
-}
-
-double area_of(std::span<const Canvas::Corner> c) {
-  double twice = 0;
-  for (std::size_t i = 1; i + 1 < c.size(); ++i)
-    twice += (c[i][0] - c[0][0]) * (c[i + 1][1] - c[0][1]) - (c[i + 1][0] - c[0][0]) * (c[i][1] - c[0][1]);
-  return std::abs(twice) / 2;
-}
 
 /// Draws one face after another.
 class Drawing {
  public:
   Drawing(const mesh::PrismMesh& mesh, const PictureOptions& options)
-      : mesh_(mesh),
-        options_(options),
-        stage_(mesh, options),
-        paint_(mesh, options.colour),
-        canvas_(options.width, options.height) {}
+      : mesh_(mesh), options_(options), easel_(shown_of(mesh, options.visibility), options), paint_(mesh, options.colour) {}
 
   void draw(const SkinFace& face) {
     const SkinPolygon polygon = polygon_of(mesh_, options_.visibility, face);
     if (polygon.size == 0) return;
-    const Rgb colour = mix({0, 0, 0}, paint_.of(face), light_on(normal_of(polygon)));
-    std::array<Canvas::Corner, 6> corners;
-    for (int i = 0; i < polygon.size; ++i)
-      corners[index(i)] = stage_.project(stage_.place(polygon.corners[index(i)], face.slab));
-    const auto shown = std::span(corners).first(index(polygon.size));
     const std::int32_t cuts = mesh_.plan().first_sublayer(face.slab + 1) - mesh_.plan().first_sublayer(face.slab);
-    const bool is_standing = face.kind == SkinFaceKind::wall && polygon.size == 4;
-    if (is_standing && cuts > 1 && options_.edges != Edges::off) {
-      const double height = std::abs(corners[3][1] - corners[0][1]);
-      if (height / cuts >= least_sublayer_pixels) return draw_cuts(face, polygon, cuts, colour);
-    }
-    canvas_.fill(shown, colour, edge_strength(options_.edges, area_of(shown) / (is_standing ? cuts : 1)), all_sides);
+    const bool is_upright = face.kind == SkinFaceKind::wall || (face.kind == SkinFaceKind::section && section_axis() != 2);
+    if (is_upright && cuts > 1 && polygon.size == 4 && shows_cuts(face, polygon, cuts)) return draw_cuts(face, polygon);
+    const std::optional<std::int32_t> sublayer =
+        face.kind == SkinFaceKind::section && !is_upright ? std::optional(sublayer_of_section(face.slab)) : std::nullopt;
+    easel_.fill(polygon, face.slab, lit(paint_.of(face, sublayer), polygon), is_upright ? cuts : 1);
   }
 
   /// Tagged faces inside, seen from both sides, before a hull that lies in the same place.
   void draw(const TaggedFace& tagged) {
     const std::optional<Rgb> colour = paint_.of_tag(tagged.tag);
     if (!colour) return;
-    const SkinPolygon polygon = polygon_of(mesh_, options_.visibility, tagged.face);
-    if (polygon.size == 0) return;
-    std::array<Canvas::Corner, 6> corners;
-    for (int i = 0; i < polygon.size; ++i)
-      corners[index(i)] = stage_.project(stage_.place(polygon.corners[index(i)], tagged.face.slab));
-    const auto shown = std::span(corners).first(index(polygon.size));
-    const Rgb lit = mix({0, 0, 0}, *colour, light_on({0, 0, 1}));
-    for (int side = 0; side < 2; ++side) {
-      canvas_.fill(shown, lit, edge_strength(options_.edges, area_of(shown)), all_sides, before_hull);
-      std::reverse(shown.begin(), shown.end());
-    }
+    easel_.fill_both_sides(polygon_of(mesh_, options_.visibility, tagged.face), tagged.face.slab, *colour);
   }
 
-  [[nodiscard]] std::string png() const {
-    return encode_png(options_.width, options_.height, options_.background.transparent ? 4 : 3,
-                      canvas_.pixels(options_.background));
-  }
-  [[nodiscard]] bool is_empty() const { return stage_.is_empty(); }
+  [[nodiscard]] std::string png() const { return easel_.png(); }
 
  private:
-  void draw_cuts(const SkinFace& face, const SkinPolygon& whole, std::int32_t cuts, Rgb colour) {
-    const auto between = [&](std::size_t low, std::size_t high, double s) {
-      Vec3 p{};
-      for (std::size_t k = 0; k < 3; ++k) p[k] = whole.corners[low][k] + s * (whole.corners[high][k] - whole.corners[low][k]);
-      return stage_.project(stage_.place(p, face.slab));
-    };
-    for (std::int32_t i = 0; i < cuts; ++i) {
-      const double low = static_cast<double>(i) / cuts, high = static_cast<double>(i + 1) / cuts;
-      const std::array<Canvas::Corner, 4> c{between(0, 3, low), between(1, 2, low), between(1, 2, high), between(0, 3, high)};
-      canvas_.fill(c, colour, edge_strength(options_.edges, area_of(c)), all_sides);
+  [[nodiscard]] int section_axis() const { return options_.visibility.section ? options_.visibility.section->axis : -1; }
+  [[nodiscard]] std::int32_t sublayer_of_section(std::int32_t slab) const {
+    const mesh::LayerPlan& plan = mesh_.plan();
+    std::int32_t k = plan.first_sublayer(slab);
+    while (k + 1 < plan.first_sublayer(slab + 1) &&
+           plan.z_m()[static_cast<std::size_t>(k) + 1] < options_.visibility.section->at_m)
+      ++k;
+    return k;
+  }
+  /// Sub-layers are told apart where they can be, and where each has a colour of its own.
+  [[nodiscard]] bool shows_cuts(const SkinFace& face, const SkinPolygon& polygon, std::int32_t cuts) const {
+    if (paint_.mode() == ColourMode::prism_quality) return true;
+    if (options_.edges == Edges::off) return false;
+    const double height =
+        std::abs(easel_.project(polygon.corners[3], face.slab)[1] - easel_.project(polygon.corners[0], face.slab)[1]);
+    return height / cuts >= least_sublayer_pixels;
+  }
+  void draw_cuts(const SkinFace& face, SkinPolygon whole) {
+    // A plane across z may have left the corners in another order: lower two first.
+    const double middle = (whole.corners[0][2] + whole.corners[1][2] + whole.corners[2][2] + whole.corners[3][2]) / 4;
+    for (int turn = 0; turn < 3 && (whole.corners[0][2] > middle || whole.corners[1][2] > middle); ++turn)
+      std::rotate(whole.corners.begin(), whole.corners.begin() + 1, whole.corners.begin() + 4);
+    const mesh::LayerPlan& plan = mesh_.plan();
+    for (std::int32_t k = plan.first_sublayer(face.slab); k < plan.first_sublayer(face.slab + 1); ++k) {
+      SkinPolygon part = whole;
+      part.corners[0][2] = part.corners[1][2] = plan.z_m()[static_cast<std::size_t>(k)];
+      part.corners[2][2] = part.corners[3][2] = plan.z_m()[static_cast<std::size_t>(k) + 1];
+      // What a plane across z has left of the wall.
+      for (std::array<double, 3>& corner : part.corners)
+        corner[2] = std::clamp(corner[2], whole.corners[0][2], whole.corners[2][2]);
+      if (part.corners[0][2] < part.corners[2][2]) easel_.fill(part, face.slab, lit(paint_.of(face, k), part), 1);
     }
   }
 
   const mesh::PrismMesh& mesh_;
   const PictureOptions& options_;
-  Stage stage_;
+  Easel easel_;
   Paint paint_;
-  Canvas canvas_;
 };
 
 }  // namespace
 
 std::string render_png(const mesh::PrismMesh& mesh, const PictureOptions& options) {
-  for (const int side : {options.width, options.height})
-    if (side < least_pixels || side > most_pixels)
-      throw Error(ErrorCode::usage, fmt::format("a picture of {} x {} pixels: each side must be {} to {}", options.width,
-                                                options.height, least_pixels, most_pixels));
   Drawing drawing(mesh, options);
-  if (drawing.is_empty())
-    throw Error(ErrorCode::region_empty, "nothing is left to draw; hide fewer layers or nets, or move the section plane");
   visit_skin(mesh, options.visibility, [&](std::span<const SkinFace> faces) {
     for (const SkinFace& face : faces) drawing.draw(face);
   });
@@ -143,15 +95,8 @@ std::string render_png(const mesh::PrismMesh& mesh, const PictureOptions& option
 std::string render_picture_svg(const mesh::PrismMesh& mesh, const PictureOptions& options, std::string_view title) {
   PictureOptions clear = options;
   clear.background.transparent = true;
-  const Paint paint(mesh, options.colour);
-  const Legend legend = legend_of(paint, options.visibility.hidden_groups);
-  const int panel = legend_width(legend), top = title.empty() ? 0 : svg_title_height;
-  SvgPage page(options.width + panel, options.height + top, options.background);
-  page.title(title);
-  page.put(fmt::format("<image x=\"0\" y=\"{}\" width=\"{}\" height=\"{}\" href=\"data:image/png;base64,{}\"/>\n", top,
-                       options.width, options.height, base64(render_png(mesh, clear))));
-  page.legend(legend, options.width, top);
-  return page.finish();
+  return picture_svg(render_png(mesh, clear), legend_of(Paint(mesh, options.colour), options.visibility.hidden_groups), options,
+                     title);
 }
 
 }  // namespace pcbmesh::view

@@ -3,24 +3,14 @@
 
 #include <fmt/format.h>
 
-#include <map>
-#include <nlohmann/json.hpp>
+#include <cmath>
 
-#include "pcbmesh/base/version.hpp"
-#include "pcbmesh/view/paint.hpp"
 #include "pcbmesh/view/plots.hpp"
 #include "pcbmesh/view/skin.hpp"
-#include "src/view/packing.hpp"
-#include "src/view/page_parts.hpp"
-#include "src/view/png.hpp"
-#include "src/view/svg.hpp"
+#include "src/view/report_page.hpp"
 
 namespace pcbmesh::view {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-constexpr int compression = 6;
 
 Json names_json(const mesh::PrismMesh& mesh) {
   Json layers = Json::array(), materials = Json::array(), nets = Json::array();
@@ -28,16 +18,8 @@ Json names_json(const mesh::PrismMesh& mesh) {
     layers.push_back(
         {{"name", mesh.layers()[i]}, {"colour", hex(layer_colour(static_cast<std::int32_t>(i), mesh.layers().size()))}});
   for (std::size_t i = 0; i < mesh.materials().size(); ++i) {
-    const board::Material& m = mesh.materials()[i];
-    materials.push_back({{"name", m.name},
-                         {"eps_r", m.eps_r},
-                         {"tan_delta", m.tan_delta},
-                         {"mu_r", m.mu_r},
-                         {"sigma", m.sigma_s_per_m},
-                         {"colour", hex(material_colour(mesh, static_cast<std::int32_t>(i)))},
-                         {"kind", is_conductor(m) ? "conductor"
-                                  : is_mask(m)    ? "mask"
-                                                  : "dielectric"}});
+    const auto material = static_cast<std::int32_t>(i);
+    materials.push_back(material_json(mesh.materials()[i], material_colour(mesh.materials(), material)));
   }
   for (std::size_t i = 0; i < mesh.nets().size(); ++i)
     nets.push_back({{"name", mesh.nets()[i]}, {"colour", hex(net_colour(static_cast<std::int32_t>(i)))}});
@@ -55,7 +37,7 @@ Json groups_json(const mesh::PrismMesh& mesh) {
                       {"layer", tag.layer},
                       {"material", tag.material},
                       {"net", tag.net},
-                      {"prisms", tag.num_prisms},
+                      {"cells", tag.num_prisms},
                       {"volume_m3", tag.volume_m3},
                       {"air", air[i] != 0},
                       {"colour", hex(group_colour(static_cast<std::int32_t>(i)))},
@@ -89,78 +71,70 @@ Json quality_json(const std::vector<layering::QualityGroup>& groups) {
   return out;
 }
 
+/// "+y": the signed axis of a port's field, or its components where it runs askew.
+std::string direction_text(const std::array<double, 3>& direction) {
+  constexpr double along = 0.9999;
+  for (std::size_t k = 0; k < 3; ++k)
+    if (std::abs(direction[k]) > along) return fmt::format("{}{}", direction[k] > 0 ? '+' : '-', "xyz"[k]);
+  return fmt::format("{:.3f}, {:.3f}, {:.3f}", direction[0], direction[1], direction[2]);
+}
+
+Json ports_json(const mesh::PrismMesh& mesh) {
+  Json ports = Json::array();
+  const auto net = [&](std::int32_t i) { return i < 0 ? Json() : Json(mesh.nets()[static_cast<std::size_t>(i)]); };
+  for (std::size_t i = 0; i < mesh.ports().size(); ++i) {
+    const mesh::Port& p = mesh.ports()[i];
+    Json tags = Json::array();
+    for (std::size_t t = 0; t < mesh.face_tags().size(); ++t)
+      if (mesh.face_tags()[t].port == static_cast<std::int32_t>(i)) tags.push_back(t);
+    const bool is_lumped = p.kind == mesh::PortKind::lumped;
+    ports.push_back({{"name", p.name},
+                     {"kind", is_lumped ? "lumped" : "wave"},
+                     {"impedance_ohm", p.impedance_ohm},
+                     {"excited", p.is_excited},
+                     {"direction", is_lumped ? Json(direction_text(p.direction)) : Json()},
+                     {"length_m", is_lumped ? Json(p.length_m) : Json()},
+                     {"width_m", is_lumped ? Json(p.width_m) : Json()},
+                     {"positive_net", net(p.positive_net)},
+                     {"negative_net", net(p.negative_net)},
+                     {"at_m", p.at_m},
+                     {"tags", tags}});
+  }
+  return ports;
+}
+
+Json modes_json() {
+  Json modes = Json::array();
+  for (const ColourMode mode :
+       {ColourMode::material, ColourMode::net, ColourMode::layer, ColourMode::group, ColourMode::face_tag,
+        ColourMode::prism_quality, ColourMode::triangle_quality, ColourMode::size})
+    modes.push_back({name_of(mode), title_of(mode)});
+  return modes;
+}
+
 Json tables_json(const mesh::PrismMesh& mesh, const PageContents& contents, const PackedMesh& packed) {
-  Json out = names_json(mesh);
-  out["title"] = contents.title;
-  out["source"] = contents.source;
-  out["num_prisms"] = mesh.num_prisms();
-  out["num_nodes"] = mesh.num_nodes();
+  Json out = shared_tables(contents, packed);
+  out["kind"] = "prisms";
+  out.update(names_json(mesh));
+  out["modes"] = modes_json();
+  out["num_cells"] = mesh.num_prisms();
   out["groups"] = groups_json(mesh);
   out["face_tags"] = face_tags_json(mesh);
+  out["ports"] = ports_json(mesh);
   out["z_m"] = mesh.plan().z_m();
   out["slab_of_sublayer"] = mesh.plan().slab_of_sublayer();
   out["columns"] = packed.columns;
   out["grid"] = {packed.x0_m, packed.y0_m, packed.step_m};
-  Json arrays = Json::array();
-  for (const PackedArray& a : packed.arrays) arrays.push_back({a.name, a.count, a.bytes});
-  out["arrays"] = arrays;
-  Json colours = Json::array();
-  for (const Rgb& c : ramp()) colours.push_back(hex(c));
-  out["ramp"] = colours;
   out["quality"] = {{"layers", quality_json(contents.quality.layers)},
                     {"materials", quality_json(contents.quality.materials)},
                     {"nets", quality_json(contents.quality.nets)}};
-  Json places = Json::array();
-  for (const PagePlace& p : contents.places)
-    places.push_back({{"severity", p.severity}, {"code", p.code}, {"text", p.text}, {"count", p.count}, {"at_m", p.at_m}});
-  out["places"] = places;
   return out;
-}
-
-/// Safe inside a script element: no "<" at all.
-std::string script_json(const Json& json) {
-  std::string out;
-  for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace))
-    if (c == '<')
-      out += "\\u003c";
-    else
-      out += c;
-  return out;
-}
-
-std::string facts_html(const PageContents& contents) {
-  std::string out;
-  for (const auto& [name, value] : contents.facts)
-    out += fmt::format("<div><dt>{}</dt><dd>{}</dd></div>\n", escape_xml(name), escape_xml(value));
-  return out;
-}
-
-std::string verdict_html(const PageContents& contents) {
-  if (!contents.passed) return "<span class=\"badge\">not checked</span>";
-  return *contents.passed ? "<span class=\"badge good\">check passed</span>" : "<span class=\"badge bad\">check failed</span>";
 }
 
 std::string plots_html(const mesh::PrismMesh& mesh, const PageContents& contents) {
   const layering::HeightStatistics heights = layering::height_statistics(mesh.planar());
-  std::string out;
-  for (const layering::QualityHistogram& h : contents.quality.histograms) out += "<figure>" + histogram_svg(h) + "</figure>\n";
-  out += "<figure>" + layer_heights_svg(mesh, heights) + "</figure>\n";
-  out += "<figure>" + height_sensitivity_svg(heights) + "</figure>\n";
-  out += "<figure>" + optimal_heights_svg(mesh, heights) + "</figure>\n";
-  return out;
-}
-
-/// The template with every "{{name}}" filled in, in one pass: what is filled in is never looked at again.
-std::string fill(std::string_view page, const std::map<std::string_view, std::string_view>& texts) {
-  std::string out;
-  for (;;) {
-    const std::size_t first = page.find("{{"), last = page.find("}}", first);
-    if (first == std::string_view::npos || last == std::string_view::npos) break;
-    out += page.substr(0, first);
-    out += texts.at(page.substr(first + 2, last - first - 2));
-    page.remove_prefix(last + 2);
-  }
-  return out.append(page);
+  return shared_plots(contents) + figure(layer_heights_svg(mesh, heights)) + figure(height_sensitivity_svg(heights)) +
+         figure(optimal_heights_svg(mesh, heights));
 }
 
 }  // namespace
@@ -190,20 +164,7 @@ std::vector<PagePlace> places_of(const layering::QualityReport& quality) {
 
 std::string report_html(const mesh::PrismMesh& mesh, const PageContents& contents) {
   const PackedMesh packed = pack(mesh);
-  const std::string tables = script_json(tables_json(mesh, contents, packed));
-  const std::string packed_text = base64(gzip(packed.bytes, compression));
-  const std::string plots = plots_html(mesh, contents), verdict = verdict_html(contents), facts = facts_html(contents),
-                    title = escape_xml(contents.title), source = escape_xml(contents.source);
-  return fill(page_template(), {{"style", page_style()},
-                                {"script", page_script()},
-                                {"version", version()},
-                                {"mesh", packed_text},
-                                {"tables", tables},
-                                {"plots", plots},
-                                {"verdict", verdict},
-                                {"facts", facts},
-                                {"title", title},
-                                {"source", source}});
+  return fill_page(tables_json(mesh, contents, packed), packed, plots_html(mesh, contents), contents);
 }
 
 }  // namespace pcbmesh::view

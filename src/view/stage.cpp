@@ -24,36 +24,10 @@ std::size_t index(std::int32_t i) {
   return static_cast<std::size_t>(i);
 }
 
-struct Bounds {
-  Vec3 min{std::numeric_limits<double>::max(), std::numeric_limits<double>::max(), std::numeric_limits<double>::max()};
-  Vec3 max{std::numeric_limits<double>::lowest(), std::numeric_limits<double>::lowest(), std::numeric_limits<double>::lowest()};
-  void add(const Vec3& p) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      min[k] = std::min(min[k], p[k]);
-      max[k] = std::max(max[k], p[k]);
-    }
-  }
-  [[nodiscard]] bool is_empty() const { return min[0] > max[0]; }
-};
-
-/// Box of all that shows, before stretching, and which slabs have a part in it.
-Bounds bounds_of(const mesh::PrismMesh& mesh, const Visibility& visibility, std::vector<char>& used) {
-  Bounds bounds;
-  used.assign(index(mesh.plan().num_slabs()), 0);
-  visit_skin(mesh, visibility, [&](std::span<const SkinFace> faces) {
-    for (const SkinFace& face : faces) {
-      const SkinPolygon polygon = polygon_of(mesh, visibility, face);
-      for (int i = 0; i < polygon.size; ++i) bounds.add(polygon.corners[index(i)]);
-      if (polygon.size > 0) used[index(face.slab)] = 1;
-    }
-  });
-  return bounds;
-}
-
-double stretch_for(const Bounds& bounds, const PictureOptions& options) {
+double stretch_for(const Shown& shown, const PictureOptions& options) {
   if (options.thickness_scale) return *options.thickness_scale;
-  const double side = std::max(bounds.max[0] - bounds.min[0], bounds.max[1] - bounds.min[1]);
-  const double height = bounds.max[2] - bounds.min[2];
+  const double side = std::max(shown.max[0] - shown.min[0], shown.max[1] - shown.min[1]);
+  const double height = shown.max[2] - shown.min[2];
   return height > 0 ? std::max(1.0, side / flattest / height) : 1.0;
 }
 
@@ -87,32 +61,42 @@ std::array<double, 3> direction_of(const Camera& camera) {
 }
 
 double thickness_scale_of(const mesh::PrismMesh& mesh, const PictureOptions& options) {
-  std::vector<char> used;
-  return stretch_for(bounds_of(mesh, options.visibility, used), options);
+  return stretch_for(shown_of(mesh, options.visibility), options);
 }
 
-Stage::Stage(const mesh::PrismMesh& mesh, const PictureOptions& options) {
-  std::vector<char> used;
-  const Bounds bounds = bounds_of(mesh, options.visibility, used);
-  is_empty_ = bounds.is_empty();
-  lift_.assign(index(mesh.plan().num_slabs()), 0.0);
+Shown shown_of(const mesh::PrismMesh& mesh, const Visibility& visibility) {
+  Shown shown(index(mesh.plan().num_slabs()));
+  visit_skin(mesh, visibility, [&](std::span<const SkinFace> faces) {
+    for (const SkinFace& face : faces) {
+      const SkinPolygon polygon = polygon_of(mesh, visibility, face);
+      for (int i = 0; i < polygon.size; ++i) shown.add(polygon.corners[index(i)]);
+      if (polygon.size > 0) shown.layers[index(face.slab)] = 0;
+    }
+  });
+  for (std::int32_t s = 0; s < mesh.plan().num_slabs(); ++s)
+    if (shown.layers[index(s)] == 0) shown.layers[index(s)] = layer_of_slab(mesh, s);
+  return shown;
+}
+
+Stage::Stage(const Shown& shown, const PictureOptions& options) {
+  is_empty_ = shown.is_empty();
+  lift_.assign(shown.layers.size(), 0.0);
   if (is_empty_) return;
-  stretch_ = stretch_for(bounds, options);
-  const double side = std::max(bounds.max[0] - bounds.min[0], bounds.max[1] - bounds.min[1]);
+  stretch_ = stretch_for(shown, options);
+  const double side = std::max(shown.max[0] - shown.min[0], shown.max[1] - shown.min[1]);
   double lift = 0;
   std::int32_t last_layer = -1;
-  for (std::int32_t s = 0; s < mesh.plan().num_slabs(); ++s) {
-    if (used[index(s)] != 0 && options.explode > 0) {
-      const std::int32_t layer = layer_of_slab(mesh, s);
-      if (last_layer >= 0 && layer != last_layer) lift += options.explode * side / 10;
-      last_layer = layer;
+  for (std::size_t s = 0; s < lift_.size(); ++s) {
+    if (shown.layers[s] >= 0) {
+      if (last_layer >= 0 && shown.layers[s] != last_layer) lift += options.explode * side / 10;
+      last_layer = shown.layers[s];
     }
-    lift_[index(s)] = lift;
+    lift_[s] = lift;
   }
-  const double low = bounds.min[2] * stretch_, high = bounds.max[2] * stretch_ + lift;
+  const double low = shown.min[2] * stretch_, high = shown.max[2] * stretch_ + lift;
   std::array<Vec3, 8> corners;
   for (std::size_t i = 0; i < 8; ++i)
-    corners[i] = {(i & 1) != 0 ? bounds.max[0] : bounds.min[0], (i & 2) != 0 ? bounds.max[1] : bounds.min[1],
+    corners[i] = {(i & 1) != 0 ? shown.max[0] : shown.min[0], (i & 2) != 0 ? shown.max[1] : shown.min[1],
                   (i & 4) != 0 ? high : low};
   look(options, corners);
 }

@@ -40,13 +40,16 @@ std::string escape_xml(std::string_view text) {
   return out;
 }
 
-Legend legend_of(const Paint& paint, const std::vector<char>& hidden_groups) {
-  Legend out{std::string(title_of(paint.mode())), paint.legend(hidden_groups), paint.range()[0], paint.range()[1], 0};
-  if (out.entries.size() > most_entries) {
-    out.num_left_out = out.entries.size() - most_entries;
-    out.entries.resize(most_entries);
+Legend shortened(Legend legend) {
+  if (legend.entries.size() > most_entries) {
+    legend.num_left_out = legend.entries.size() - most_entries;
+    legend.entries.resize(most_entries);
   }
-  return out;
+  return legend;
+}
+
+Legend legend_of(const Paint& paint, const std::vector<char>& hidden_groups) {
+  return shortened({std::string(title_of(paint.mode())), paint.legend(hidden_groups), paint.range()[0], paint.range()[1], 0});
 }
 
 int legend_width(const Legend& legend) {

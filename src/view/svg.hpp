@@ -19,6 +19,8 @@ struct Legend {
   double low = 0, high = 1;          ///< at the ends of the ramp
   std::size_t num_left_out = 0;
 };
+/// With as many entries as fit beside a picture.
+[[nodiscard]] Legend shortened(Legend legend);
 [[nodiscard]] Legend legend_of(const Paint& paint, const std::vector<char>& hidden_groups);
 /// Width of a legend's panel, pixels.
 [[nodiscard]] int legend_width(const Legend& legend);

@@ -167,6 +167,32 @@ class Cli(unittest.TestCase):
         self.assertEqual(target.read_text(), "old")
         self.assertEqual([name for name in self.leftovers() if name.endswith(".part")], [])
 
+    def test_a_full_disk_ends_in_exit_5_the_old_file_and_no_debris(self):
+        script = 'mount -t tmpfs -o size=400k none "$1" 2>/dev/null || exit 77; echo old > "$1/x.msh"; cd "$1"; "$2" mesh "$3" --air 0 --longest-edge 50um -o x.msh 2>&1; code=$?; ls; cat x.msh; exit $code'
+        done = subprocess.run(["unshare", "-m", "sh", "-c", script, "sh", self.out, PROGRAM, SERPENTINE], capture_output=True, text=True, timeout=120)
+        if done.returncode == 77 or "unshare" in done.stderr:
+            self.skipTest("may not mount a small disk here")
+        self.assertEqual(done.returncode, 5, done.stdout)
+        self.assertRegex(done.stdout, r"No space left.*needed.*are free")
+        self.assertEqual(done.stdout.splitlines()[-2:], ["x.msh", "old"], "nothing but the old file is there")
+
+    def test_a_killed_run_leaves_the_old_mesh_or_the_new_one(self):
+        target = self.out / "x.msh"
+        arguments = [PROGRAM, "mesh", SERPENTINE, "--air", "0", "--longest-edge", "60um", "--no-check", "-o", target]
+        start = time.monotonic()
+        subprocess.run(arguments, check=True, stdout=subprocess.DEVNULL)
+        seconds = time.monotonic() - start
+        new = target.read_bytes()
+        killed = 0
+        for i in range(20):
+            target.write_text("old")
+            process = subprocess.Popen(arguments, stdout=subprocess.DEVNULL)
+            time.sleep(seconds * i / 20)
+            process.kill()
+            killed += process.wait(timeout=60) < 0
+            self.assertIn(target.read_bytes(), (b"old", new))
+        self.assertGreater(killed, 2, "few runs were cut short: the test proves little")
+
     def test_a_mesh_that_is_a_folder_is_written_and_certified(self):
         done = run("mesh", SERPENTINE, "-o", self.out / "a.elmer")
         self.assertEqual(done.returncode, 0, done.stderr)

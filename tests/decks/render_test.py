@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Pictures: what they show, that they come out the same every time, and what is said when they can't be drawn."""
+import gzip
 import io
 import json
 import re
@@ -13,7 +14,7 @@ from pathlib import Path
 from program import ROOT, SKIPPED, run
 
 try:
-    from PIL import Image
+    from PIL import Image, ImageChops
 except ImportError:
     print("skipped: python3-pil is not installed")
     sys.exit(SKIPPED)
@@ -114,10 +115,72 @@ class Pictures(unittest.TestCase):
         done = run("view", self.out / "x.pcbmesh", "-o", self.out / "x.html")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("DecompressionStream", (self.out / "x.html").read_text())
-        done = run("view", self.out / "x.msh", "-o", self.out / "y.html")
-        self.assertEqual(done.returncode, 2)
-        self.assertIn(".pcbmesh", done.stderr)
-        self.assertFalse((self.out / "y.html").exists())
+
+    def test_a_report_holds_every_plot(self):
+        done = run("view", *VIA[:3], "--policy", "matched", "--target-quality", "0.9", "-o", self.out / "m.html", "--no-check", "--quiet")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        plots = {xml.fromstring(svg).get("aria-label"): svg for svg in re.findall(r"<figure>(<svg.*?</svg>)", (self.out / "m.html").read_text(), re.S)}
+        for title in ("Prism quality q_p", "Layers: height and cuts", "Mean prism quality over one common height", "Optimal prism height of every triangle",
+                      "Pareto front: quality over prisms"):
+            self.assertIn(title, plots)
+        front = plots["Pareto front: quality over prisms"]
+        done = run("mesh", *VIA[:3], "--policy", "matched", "--target-quality", "0.9", "-o", self.out / "m.msh", "--quiet")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        match = json.loads((self.out / "m.report.json").read_text())["match"]
+        taken = match["meshes"][match["chosen"]]
+        self.assertIn(f"taken: {taken['prisms']} prisms, quality {min(taken['mean_prism'], taken['volume_weighted_prism']):.4f}", front)
+        self.assertEqual(len(re.findall(r"<circle", front)), len(match["meshes"]))
+        self.assertIn("goal 0.9", front)
+        # Another policy weighs nothing up.
+        self.assertEqual(run("view", *VIA, "-o", self.out / "a.html", "--no-check", "--quiet").returncode, 0)
+        self.assertNotIn("Pareto front", (self.out / "a.html").read_text().split("<script", 1)[0])
+
+    def test_every_format_that_is_read_gives_the_picture_of_the_prism_mesh(self):
+        files = [self.out / f"x{ending}" for ending in (".pcbmesh", ".msh", ".vtu", ".vtkhdf", ".xdmf", ".mesh", ".inp")]
+        done = run("mesh", *VIA, "--quiet", *(part for file in files for part in ("-o", file)))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        (self.out / "x.msh.gz").write_bytes(gzip.compress(files[1].read_bytes()))
+        for options in ((), ("--section", "y=1.6mm", "--colour", "net"), ("--explode", "1", "--colour", "q_p")):
+            pictures = {file.name: self.draw(file, *options, "--edges", "off") for file in (*files, self.out / "x.msh.gz")}
+            for name, picture in pictures.items():
+                # Text formats round coordinates, which may move a pixel or two.
+                if name.endswith((".mesh", ".inp")):
+                    a, b = (Image.open(io.BytesIO(p)).convert("RGB") for p in (picture, pictures["x.pcbmesh"]))
+                    changed = ImageChops.difference(a, b).convert("L").point(lambda v: 255 if v > 8 else 0).histogram()[255]
+                    self.assertLess(changed, 50, f"{name} {options}")
+                else:
+                    self.assertEqual(picture, pictures["x.pcbmesh"], f"{name} {options}")
+        counts = [json.loads(run("render", file, "-o", self.out / "c.png", "--json").stdout) for file in files[:2]]
+        self.assertEqual(counts[0]["prisms"], counts[1]["cells"])
+        self.assertEqual([counts[0][k] for k in ("visible_triangles", "visible_quads")], [counts[1][k] for k in ("visible_triangles", "visible_quads")])
+
+    def test_tetrahedra_cover_the_same_surface(self):
+        done = run("mesh", *VIA, "--quiet", "-o", self.out / "x.msh")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        done = run("convert", self.out / "x.msh", self.out / "t.msh", "--split", "tets", "--quiet")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        a, b = (Image.open(io.BytesIO(self.draw(self.out / name, "--edges", "off", "--explode", "1"))).convert("RGB") for name in ("x.msh", "t.msh"))
+        self.assertLess(ImageChops.difference(a, b).convert("L").point(lambda v: 255 if v > 8 else 0).histogram()[255], 0.001 * a.width * a.height)
+        counts = json.loads(run("render", self.out / "t.msh", "-o", self.out / "t.png", "--json").stdout)
+        self.assertEqual(counts["visible_quads"], 0)
+
+    def test_cells_of_others_by_their_groups(self):
+        tetrahedra = """$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n3 7 "Solid A"\n$EndPhysicalNames
+$Nodes\n5\n1 0 0 0\n2 10 0 0\n3 0 10 0\n4 0 0 10\n5 10 10 10\n$EndNodes\n$Elements\n2\n1 4 2 7 1 1 2 3 4\n2 4 2 8 2 2 3 4 5\n$EndElements\n"""
+        (self.out / "t.msh").write_text(tetrahedra)
+        svg = self.draw(self.out / "t.msh", "--input-unit", "mm", name="t.svg").decode()
+        texts = [t.text for t in xml.fromstring(svg).iter(f"{SVG}text")]
+        for words in ("Volume group", "Solid A", "volume 8"):
+            self.assertIn(words, texts)
+        self.assertNotEqual(self.draw(self.out / "t.msh", "--input-unit", "mm"), self.draw(self.out / "t.msh", "--input-unit", "mm", "--hide", "Solid A"))
+        # 2 mm off a corner of 10 mm: the unit counts.
+        self.assertNotEqual(self.draw(self.out / "t.msh", "--input-unit", "mm", "--section", "z=2mm-"), self.draw(self.out / "t.msh", "--input-unit", "mm"))
+        for arguments, words in ((("--colour", "net"), "group, q_p, size"), (("--hide", "Solid B"), "did you mean 'Solid A'"), (("--input-unit", "pt"), "pt"),
+                                 (("--show-box", "20mm,20mm,30mm,30mm"), "no cell")):
+            done = run("render", self.out / "t.msh", "-o", self.out / "no.png", *arguments)
+            self.assertNotEqual(done.returncode, 0, arguments)
+            self.assertIn(words, done.stderr)
+            self.assertFalse((self.out / "no.png").exists())
 
     def test_usage(self):
         for arguments, words in (((*VIA, "-o", self.out / "x.jpg"), ".png or .svg"), ((*VIA, "-o", self.out / "x.png", "--view", "up"), "iso"),

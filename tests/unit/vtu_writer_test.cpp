@@ -142,7 +142,7 @@ TEST(VtuWriter, PartsHoldEveryCellOnceAndNoNodeTooMany) {
   options.faces = true;
   write_mesh(source, folder / "a.pvtu", options);
   std::int64_t cells = 0, faces = 0;
-  for (const char* name : {"a/0.vtu", "a/1.vtu", "a/2.vtu"}) {
+  for (const char* name : {"a_pvtu/0.vtu", "a_pvtu/1.vtu", "a_pvtu/2.vtu"}) {
     const mesh::MeshData part = read_mesh(folder / name);
     std::vector<bool> used(part.nodes.size(), false);
     for (const mesh::CellBlock& block : part.cells) {
@@ -158,7 +158,14 @@ TEST(VtuWriter, PartsHoldEveryCellOnceAndNoNodeTooMany) {
   EXPECT_EQ(cells, source.num_elements(3));
   EXPECT_EQ(faces, source.num_elements(2));
   const std::string list = contents(folder / "a.pvtu");
-  EXPECT_NE(list.find("<Piece Source=\"a/2.vtu\"/>"), std::string::npos) << list;
+  EXPECT_NE(list.find("<Piece Source=\"a_pvtu/2.vtu\"/>"), std::string::npos) << list;
+  // Fewer parts leave none of the old ones behind; what is not ours stays.
+  options.num_parts = 2;
+  write_mesh(source, folder / "a.pvtu", options);
+  EXPECT_FALSE(std::filesystem::exists(folder / "a_pvtu/2.vtu"));
+  testing::create(folder / "a_pvtu/notes.txt", "precious");
+  EXPECT_EQ(error_of([&] { write_mesh(source, folder / "a.pvtu", options); }).code(), ErrorCode::write_failed);
+  EXPECT_TRUE(std::filesystem::exists(folder / "a_pvtu/1.vtu"));
 }
 
 TEST(VtuWriter, BlocksAreNamedLikeTheGroupsAndHoldTheirElements) {
@@ -168,11 +175,11 @@ TEST(VtuWriter, BlocksAreNamedLikeTheGroupsAndHoldTheirElements) {
   const Folder folder;
   write_mesh(source, folder / "a.vtm", {});
   const std::string list = contents(folder / "a.vtm");
-  EXPECT_NE(list.find("name=\"a&lt;b &amp; 'c'\" file=\"a/volume_1.vtu\""), std::string::npos) << list;
+  EXPECT_NE(list.find("name=\"a&lt;b &amp; 'c'\" file=\"a_vtm/volume_1.vtu\""), std::string::npos) << list;
   for (const mesh::ElementGroup& group : source.groups()) {
     if (group.num_elements == 0) continue;
     const mesh::MeshData block = read_mesh(
-        folder / ("a/" + std::string(group.dimension == 3 ? "volume_" : "face_") + std::to_string(group.tag) + ".vtu"));
+        folder / ("a_vtm/" + std::string(group.dimension == 3 ? "volume_" : "face_") + std::to_string(group.tag) + ".vtu"));
     std::int64_t count = 0;
     for (const mesh::CellBlock& cells : block.cells) {
       count += cells.size();

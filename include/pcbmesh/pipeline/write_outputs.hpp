@@ -37,7 +37,7 @@ struct OutputResult {
 /// @throws Error usage (101), write_failed (701).
 void require_writable(const OutputOptions& options, const std::filesystem::path& input);
 
-/// Writes x.tags.json (what each tag means), x.resolved.json (the resolved study), then the meshes, then judges.
+/// Writes the meshes, then x.tags.json (what each tag means) and x.resolved.json (the resolved study), then judges.
 /// The verdict is on the first mesh file that can be read back, else on the mesh expanded in memory; with it comes
 /// x.certificate.json (hashes of all files, counts of all checks, volumes beside their analytic values).
 /// Every file appears whole or not at all. @throws Error write_failed (701), format_limit (703), cancelled (103).

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -63,7 +64,8 @@ class Paint {
   Paint(const mesh::PrismMesh& mesh, ColourMode mode);
   [[nodiscard]] ColourMode mode() const { return mode_; }
   /// Before any light falls on it. @cost O(1); face_tag O(log boundary faces).
-  [[nodiscard]] Rgb of(const SkinFace& face) const;
+  /// @param sublayer  of the cell, which prism quality alone asks for; empty = the one at a cap, the lowest of a wall
+  [[nodiscard]] Rgb of(const SkinFace& face, std::optional<std::int32_t> sublayer = {}) const;
   /// Colour of an inner tagged face: copper or its net's colour for sheets, a colour of their own for ports; none for what the
   /// mode does not bring out.
   [[nodiscard]] std::optional<Rgb> of_tag(std::int32_t face_tag) const;
@@ -75,7 +77,7 @@ class Paint {
   [[nodiscard]] std::array<double, 2> range() const { return range_; }
 
  private:
-  [[nodiscard]] double value_of(const SkinFace& face) const;
+  [[nodiscard]] double value_of(const SkinFace& face, std::int32_t sublayer) const;
   mesh::PrismMesh mesh_;
   ColourMode mode_;
   std::vector<Rgb> groups_;
@@ -89,10 +91,15 @@ class Paint {
 [[nodiscard]] bool is_mask(const board::Material& material);
 
 /// Colours of things by their place in the mesh's tables.
-[[nodiscard]] Rgb material_colour(const mesh::PrismMesh& mesh, std::int32_t material);
+[[nodiscard]] Rgb material_colour(std::span<const board::Material> materials, std::int32_t material);
 [[nodiscard]] Rgb net_colour(std::int32_t net);
 [[nodiscard]] Rgb layer_colour(std::int32_t layer, std::size_t num_layers);
 [[nodiscard]] Rgb group_colour(std::int32_t group);
+/// What belongs to no net stays in the background.
+[[nodiscard]] Rgb quiet(Rgb colour);
+/// How much of a conductor's colour shines through a film on it.
+[[nodiscard]] double film_share(ColourMode mode);
+inline constexpr Rgb no_value{150, 156, 163}, port_colour{224, 36, 130}, sheet_colour{205, 127, 60};
 
 /// Light on a face with unit normal n: the same in pictures and on the page. In [0.55, 1].
 [[nodiscard]] double light_on(const std::array<double, 3>& normal);

@@ -3,7 +3,8 @@
 import math
 
 WIDTH, HEIGHT, LEFT, RIGHT, TOP, BOTTOM = 720, 440, 70, 20, 40, 55
-COLOURS = ("#1f5fa8", "#c1440e", "#2e7d32", "#6a3d9a")
+# One for each series; told apart in grey and by the colour-blind as far as ten can be (Okabe and Ito, then darker ones).
+COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#000000", "#e69f00", "#56b4e9", "#8c510a", "#6a3d9a", "#4d4d4d")
 
 
 def _ticks(low, high, most=8):
@@ -18,6 +19,9 @@ def _ticks(low, high, most=8):
 
 def plot(title, x_label, y_label, series, x_range, y_range, legend_top=TOP + 14):
     """SVG text. series: (name, points, "line" | "dashed" | "dots")."""
+    if len(series) > len(COLOURS):
+        raise ValueError(f"{len(series)} series, but only {len(COLOURS)} colours: two would look alike")
+
     def x(value):
         return LEFT + (value - x_range[0]) / (x_range[1] - x_range[0]) * (WIDTH - LEFT - RIGHT)
 
@@ -35,7 +39,7 @@ def plot(title, x_label, y_label, series, x_range, y_range, legend_top=TOP + 14)
     out.append(f'<text x="{(LEFT + WIDTH - RIGHT) / 2}" y="{HEIGHT - 12}" text-anchor="middle">{x_label}</text>')
     out.append(f'<text x="18" y="{(TOP + HEIGHT - BOTTOM) / 2}" text-anchor="middle" transform="rotate(-90 18 {(TOP + HEIGHT - BOTTOM) / 2})">{y_label}</text>')
     for i, (name, points, kind) in enumerate(series):
-        colour = COLOURS[i % len(COLOURS)]
+        colour = COLOURS[i]
         inside = [(x(a), y(b)) for a, b in points if x_range[0] <= a <= x_range[1] and y_range[0] <= b <= y_range[1]]
         if kind in ("dots", "discs"):
             radius = 2 if kind == "dots" else 5

@@ -1,24 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+import { Cells } from "./cells.mjs";
 import { decode } from "./decode.mjs";
 import { definition_list, element, grouped, length_text, short, table, ToggleList } from "./panel.mjs";
-import { is_continuous, modes, Paint } from "./paint.mjs";
+import { is_continuous } from "./paint.mjs";
 import { Prisms } from "./prisms.mjs";
 import { has_webgl, Stage } from "./stage.mjs";
 
 const $ = (id) => document.getElementById(id);
 const tables = JSON.parse($("tables").textContent);
+const { modes } = tables;
+const port_colour = "#e02482";
 const say = (text) => ($("live").textContent = text);
 
 class Page {
-  constructor(prisms) {
-    this.prisms = prisms;
+  /// @param model  Prisms or Cells
+  constructor(model) {
+    this.model = model;
     this.hidden = tables.groups.map((g) => g.air);
-    this.mode = "material";
+    this.mode = modes[0][0];
     this.explode = 0;
     this.section = { axis: -1, share: 0.5, keep_above: false };
-    this.stage = new Stage($("canvas"), prisms, () => this.place_pins());
-    const height = prisms.slab_z.at(-1) - prisms.slab_z[0];
-    const shown_height = this.shown_height() || height;
+    this.stage = new Stage($("canvas"), model, () => this.place_pins());
+    const shown_height = model.shown_height(this.hidden) || model.z_range[1] - model.z_range[0];
     this.thickness = Math.max(1, Math.round((this.stage.side / 20 / shown_height) * 2) / 2);
     this.make_lists();
     this.make_controls();
@@ -30,29 +33,21 @@ class Page {
     this.stage.look_from(-35, 38);
     this.set_theme(document.documentElement.dataset.theme ?? (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light"), false);
   }
-  shown_height() {
-    const { slab_z, num_slabs, layer_of_slab } = this.prisms;
-    let sum = 0;
-    for (let s = 0; s < num_slabs; ++s)
-      if (tables.groups.some((g, i) => !this.hidden[i] && g.layer === layer_of_slab[s])) sum += slab_z[s + 1] - slab_z[s];
-    return sum;
-  }
-
   /// Everything that hangs on what is shown and in which colours.
   refresh() {
-    this.paint = new Paint(this.prisms, this.mode);
+    this.paint = this.model.paint(this.mode);
     this.stage.show(this.hidden, this.paint, this.explode > 0);
-    for (const list of [this.layers, this.materials, this.nets]) list.update(this.hidden);
+    for (const list of this.lists) list.update(this.hidden);
     this.make_legend();
-    const shown = tables.groups.reduce((sum, g, i) => sum + (this.hidden[i] ? 0 : g.prisms), 0);
-    $("shown").textContent = `${grouped(shown)} of ${grouped(tables.num_prisms)} prisms shown`;
+    const shown = tables.groups.reduce((sum, g, i) => sum + (this.hidden[i] ? 0 : g.cells), 0);
+    $("shown").textContent = `${grouped(shown)} of ${grouped(tables.num_cells)} ${this.model.word} shown`;
   }
 
   // ---- left: what is shown
 
   make_lists() {
     const groups_where = (test) => tables.groups.flatMap((g, i) => (test(g) ? [i] : []));
-    const count = (groups) => grouped(groups.reduce((sum, i) => sum + tables.groups[i].prisms, 0));
+    const count = (groups) => grouped(groups.reduce((sum, i) => sum + tables.groups[i].cells, 0));
     // Air that fills the gaps of a copper layer is air's business, not that layer's.
     const solid = (groups) => (groups.every((i) => tables.groups[i].air) ? groups : groups.filter((i) => !tables.groups[i].air));
     const items_of = (names, field) =>
@@ -75,23 +70,37 @@ class Page {
       say("Everything but air shown");
     };
     const options = { on_change, on_only, on_all };
-    const layers = items_of(tables.layers, "layer").reverse();
-    this.layers = new ToggleList($("layers"), layers, { ...options, kind: "layer", searchable: true });
-    this.materials = new ToggleList($("materials"), items_of(tables.materials, "material"), { ...options, kind: "material" });
+    this.lists = [];
+    // A list without entries has no place in the panel.
+    const list = (id, items, more) => {
+      $(id).closest("details").hidden = items.length === 0;
+      $(`${id}_count`).textContent = items.length;
+      if (items.length > 0) this.lists.push(new ToggleList($(id), items, { ...options, ...more }));
+    };
+    list("layers", items_of(tables.layers, "layer").reverse(), { kind: "layer", searchable: true });
+    list("materials", items_of(tables.materials, "material"), { kind: "material" });
     const nets = items_of(tables.nets, "net");
     const none = groups_where((g) => g.net < 0);
-    if (none.length > 0) nets.push({ name: "no net", colour: "#b0aaa0", groups: none, note: count(none) });
-    this.nets = new ToggleList($("nets"), nets, { ...options, kind: "net", searchable: true });
-    $("layers_count").textContent = layers.length;
-    $("nets_count").textContent = nets.length;
-    $("materials_count").textContent = this.materials.items.length;
+    if (none.length > 0 && tables.nets.length > 0) nets.push({ name: "no net", colour: "#b0aaa0", groups: none, note: count(none) });
+    list("nets", nets, { kind: "net", searchable: true });
+    // Groups that tell neither layer nor material are shown and hidden by their own names.
+    const nameless = groups_where((g) => g.layer === undefined || g.layer < 0);
+    list("groups", nameless.map((i) => ({ name: tables.groups[i].name, colour: tables.groups[i].colour, groups: [i], note: count([i]) })), { kind: "volume group", searchable: true });
+    this.make_tags();
+    this.make_ports();
+    const volumes = ["name", "id", this.model.word, "volume, mm\u00b3"].concat(this.model.exact_section ? [] : ["mean quality", "worst"]);
+    $("tags").append(table("Volume groups", volumes, tables.groups.map((g) => [g.name, String(g.id), grouped(g.cells), short(g.volume_m3 * 1e9)]
+      .concat(this.model.exact_section ? [] : g.mean_quality > 0 ? [short(g.mean_quality), short(g.worst_quality, 3)] : ["\u2013", "\u2013"]))));
+  }
 
+  make_tags() {
     $("tags_count").textContent = tables.face_tags.length;
     // What lies inside shows at once; the hull only on request.
-    const port_colour = "#e02482";
-    this.tag_shown = tables.face_tags.map((t) => t.kind === "port" || t.kind === "wave_port" || t.kind === "sheet");
-    this.tag_colours = tables.face_tags.map((t) => (t.kind.endsWith("port") ? port_colour : t.kind === "sheet" ? "#cd7f3c" : t.colour));
-    const tag_list = new ToggleList($("tags"), tables.face_tags.map((t, i) => ({ name: t.name, colour: this.tag_colours[i], groups: [], index: i, note: grouped(t.triangles + t.quads) })), {
+    const is_port = (t) => t.kind === "port" || t.kind === "wave_port";
+    this.tag_shown = tables.face_tags.map((t) => is_port(t) || t.kind === "sheet");
+    this.tag_colours = tables.face_tags.map((t) => (is_port(t) ? port_colour : t.kind === "sheet" ? "#cd7f3c" : t.colour));
+    const faces_of = (t) => t.faces ?? t.triangles + t.quads;
+    this.tag_list = new ToggleList($("tags"), tables.face_tags.map((t, i) => ({ name: t.name, colour: this.tag_colours[i], groups: [], index: i, note: grouped(faces_of(t)) })), {
       kind: "tag", searchable: true,
       on_change: (item, shown) => {
         this.tag_shown[item.index] = shown;
@@ -99,16 +108,55 @@ class Page {
         say(`Face tag ${item.name} ${shown ? "shown" : "no longer shown"}`);
       },
     });
-    tag_list.boxes.forEach((box, i) => (box.checked = this.tag_shown[i]));
-    $("tags").append(table("Face tags: boundaries, conductor skins, ports", ["name", "id", "kind", "condition", "area, mm\u00b2"],
-      tables.face_tags.map((t) => [t.name, String(t.id), t.kind, t.condition, short(t.area_m2 * 1e6)])));
+    const columns = this.model.exact_section
+      ? [["name", "id", "kind", "condition", "area, mm\u00b2"], (t) => [t.name, String(t.id), t.kind, t.condition, short(t.area_m2 * 1e6)]]
+      : [["name", "id", "kind", "faces"], (t) => [t.name, String(t.id), t.kind || "\u2013", grouped(t.faces)]];
+    if (tables.face_tags.length === 0) return;
+    $("tags").append(table("Face tags: boundaries, conductor skins, ports", columns[0], tables.face_tags.map(columns[1])));
     $("tags").append(element("button", { type: "button", class: "link", onclick: () => this.set_mode("tag") }, "Colour all faces by tag"));
-    $("tags").append(table("Volume groups", ["name", "id", "prisms", "volume, mm\u00b3"], tables.groups.map((g) => [g.name, String(g.id), grouped(g.prisms), short(g.volume_m3 * 1e9)])));
+  }
+
+  /// Ports: what they are, shown or not, and a button that flies there.
+  make_ports() {
+    // Of a file of cells the names of port faces are all there is.
+    this.ports = tables.ports ?? tables.face_tags.flatMap((t, i) => {
+      const at = t.kind.endsWith("port") ? this.model.middle_of_tag(i) : null;
+      return at ? [{ name: t.name.replace(/^(wave_)?port\|/, ""), kind: t.kind === "port" ? "lumped" : "wave", tags: [i], at_m: at.map((v) => v / 1e3) }] : [];
+    });
+    $("ports").closest("details").hidden = this.ports.length === 0;
+    $("ports_count").textContent = this.ports.length;
+    const list = element("ul", { class: "places" });
+    for (const port of this.ports) {
+      port.box = element("input", { type: "checkbox", onchange: () => {
+        for (const tag of port.tags) this.tag_shown[tag] = port.box.checked;
+        this.show_tags();
+        say(`Port ${port.name} ${port.box.checked ? "shown" : "hidden"}`);
+      } });
+      const swatch = element("span", { class: "swatch", "aria-hidden": "true" });
+      swatch.style.background = port_colour;
+      const facts = [`${port.kind} port`];
+      if (port.impedance_ohm !== undefined) facts.push(`${short(port.impedance_ohm)} \u03a9`, port.excited ? "excited" : "passive");
+      if (port.direction) facts.push(`field along ${port.direction}`);
+      const nets = port.positive_net || port.negative_net ? [`from ${port.negative_net ?? "no net"} (\u2212) to ${port.positive_net ?? "no net"} (+)`] : [];
+      if (port.length_m) nets.push(`${length_text(port.length_m * 1e3)} long, ${length_text(port.width_m * 1e3)} wide`);
+      list.append(element("li", {},
+        element("label", {}, port.box, swatch, element("strong", {}, port.name)),
+        element("p", {}, facts.join(", ")), nets.length > 0 ? element("p", {}, nets.join("; ")) : "",
+        element("div", { class: "fly" }, element("button", { type: "button", "aria-label": `Show port ${port.name}`, onclick: () => this.fly_to({ code: `port ${port.name}`, span: port.length_m && 12e3 * Math.max(port.length_m, port.width_m) }, port.at_m) },
+          `at ${short(port.at_m[0] * 1e3)}, ${short(port.at_m[1] * 1e3)} mm`))));
+    }
+    $("ports").append(list);
   }
 
   show_tags() {
     const rgb = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));
     this.stage.show_tags(this.tag_shown, this.tag_colours.map(rgb));
+    this.tag_list.boxes.forEach((box, i) => (box.checked = this.tag_shown[i]));
+    for (const port of this.ports) {
+      const shown = port.tags.filter((tag) => this.tag_shown[tag]).length;
+      port.box.checked = shown > 0;
+      port.box.indeterminate = shown > 0 && shown < port.tags.length;
+    }
     this.make_legend();
   }
 
@@ -120,6 +168,8 @@ class Page {
       const bar = element("div", { class: "ramp", "aria-hidden": "true" });
       bar.style.background = `linear-gradient(90deg, ${tables.ramp.join(", ")})`;
       const text = this.mode === "size" ? [length_text(low), length_text(high)] : [short(low), short(high)];
+      // A cut through a file of cells is no cell, so it has no quality.
+      if (!this.model.exact_section && this.section.axis >= 0) host.append(element("p", {}, "grey: the cut, which has no value"));
       host.append(bar, element("div", { class: "ramp_ends" }, element("span", {}, text[0]), element("span", {}, text[1])));
       return;
     }
@@ -129,8 +179,9 @@ class Page {
       entries.set("no tag", "#969ca3");
     } else {
       tables.groups.forEach((g, i) => {
-        if (this.hidden[i]) return;
-        if (this.mode === "material") entries.set(tables.materials[g.material].name, tables.materials[g.material].colour);
+        if (this.hidden[i] || g.cells === 0) return;
+        if (g.material < 0) entries.set(g.name, g.colour);
+        else if (this.mode === "material") entries.set(tables.materials[g.material].name, tables.materials[g.material].colour);
         else if (this.mode === "layer") entries.set(tables.layers[g.layer].name, tables.layers[g.layer].colour);
         else if (this.mode === "net") entries.set(g.net < 0 ? "no net" : tables.nets[g.net].name, g.net < 0 ? "#c9c5bb" : tables.nets[g.net].colour);
         else entries.set(g.name, g.colour);
@@ -208,13 +259,14 @@ class Page {
   set_section(change) {
     Object.assign(this.section, change);
     const { axis, share, keep_above } = this.section;
-    const { box, slab_z } = this.prisms;
+    const { box, z_range } = this.model;
     $("section_row").hidden = axis < 0;
+    this.make_legend();
     if (axis < 0) {
       $("section_value").textContent = "";
       return this.stage.set_section(null);
     }
-    const ends = [[box.min_x, box.max_x], [box.min_y, box.max_y], [slab_z[0], slab_z.at(-1)]][axis];
+    const ends = [[box.min_x, box.max_x], [box.min_y, box.max_y], z_range][axis];
     const at = ends[0] + share * (ends[1] - ends[0]);
     $("section_value").textContent = length_text(at);
     this.stage.set_section({ axis, at, keep_above });
@@ -238,7 +290,7 @@ class Page {
     canvas.addEventListener("dblclick", (e) => {
       const box = canvas.getBoundingClientRect();
       const hit = this.stage.pick(e.clientX - box.left, e.clientY - box.top);
-      if (hit) this.stage.fly_to(hit.at, hit.slab, Math.max(this.prisms.longest[hit.t] * 25, 0.02));
+      if (hit) this.stage.fly_to(hit.at, hit.slab, Math.max(this.model.size_of(hit) * 25, 0.02));
     });
   }
 
@@ -274,20 +326,6 @@ class Page {
 
   // ---- one cell
 
-  describe(hit) {
-    const p = this.prisms;
-    let sublayer = p.first_sublayer[hit.slab];
-    while (sublayer + 1 < p.first_sublayer[hit.slab + 1] && hit.at[2] > p.z[sublayer + 1]) ++sublayer;
-    const height = p.z[sublayer + 1] - p.z[sublayer];
-    const group = tables.groups[p.group(hit.slab, hit.t)], material = tables.materials[group.material];
-    const tag = hit.kind === "section" ? -1 : p.face_tag(hit.kind, hit.slab, hit.t, hit.a, hit.b);
-    return {
-      ...hit, sublayer, prism: p.cell_number(hit.slab, sublayer, hit.t), group: group.name, group_id: group.id,
-      layer: tables.layers[group.layer].name, material: material.name, net: group.net < 0 ? "none" : tables.nets[group.net].name,
-      face_tag: tag < 0 ? "none" : tables.face_tags[tag].name, face_tag_id: tag < 0 ? null : tables.face_tags[tag].id,
-      q_p: p.prism_quality(hit.slab, hit.t, height), q_t: p.triangle_quality(hit.t), longest_mm: p.longest[hit.t], height_mm: height, eps_r: material.eps_r,
-    };
-  }
   show_pick(hit) {
     const card = $("pick");
     if (!hit) {
@@ -296,20 +334,13 @@ class Page {
       this.stage.mark(null);
       return;
     }
-    const d = (this.picked = this.describe(hit));
+    const d = (this.picked = this.model.describe(hit)), told = this.model.card(d);
     this.stage.mark(d);
-    const face = { up: "top face", down: "bottom face", wall: "side face", section: "cut" }[d.kind];
     card.replaceChildren(
-      element("h2", {}, `Prism ${grouped(d.prism)}${this.hidden[this.prisms.group(d.slab, d.t)] ? " (hidden)" : ""}`, element("button", { type: "button", class: "close", "aria-label": "Close", onclick: () => this.show_pick(null) }, "\u00d7")),
-      definition_list([
-        ["Layer", d.layer], ["Material", `${d.material} (\u03b5r ${short(d.eps_r)})`], ["Net", d.net],
-        ["Volume group", `${d.group_id}: ${d.group}`], [`Face tag, ${face}`, d.face_tag_id === null ? "none" : `${d.face_tag_id}: ${d.face_tag}`],
-        ["Triangle, sub-layer", `${grouped(d.t)}, ${d.sublayer}`], ["q_p, q_t", `${short(d.q_p)}, ${short(d.q_t)}`],
-        ["Longest edge, height", `${length_text(d.longest_mm)}, ${length_text(d.height_mm)}`],
-        ["Place", d.at.map((v) => Number(v.toFixed(4))).join(", ") + " mm"],
-      ]));
+      element("h2", {}, `${told.title}${this.hidden[this.model.group_of(d)] ? " (hidden)" : ""}`, element("button", { type: "button", class: "close", "aria-label": "Close", onclick: () => this.show_pick(null) }, "\u00d7")),
+      definition_list([...told.rows, ["Place", d.at.map((v) => Number(v.toFixed(4))).join(", ") + " mm"]]));
     card.hidden = false;
-    say(`Prism ${d.prism}, layer ${d.layer}, material ${d.material}, net ${d.net}, quality ${short(d.q_p)}`);
+    say(told.spoken);
   }
 
   // ---- findings
@@ -330,15 +361,14 @@ class Page {
     }
     host.append(list);
   }
+  /// place.span: how many mm should fill the view; else what suits the cells there.
   fly_to(place, at_m) {
     const at = at_m.map((v) => v * 1e3);
-    const p = this.prisms;
-    let slab = 0;
-    while (slab + 1 < p.num_slabs && at[2] > p.slab_z[slab + 1]) ++slab;
-    const t = p.locate(at[0], at[1]);
-    this.pin = { at, slab, text: place.code };
-    this.stage.fly_to(at, slab, t >= 0 ? Math.min(this.stage.side, Math.max(p.longest[t] * 40, this.stage.side / 200)) : this.stage.side / 10);
-    if (t >= 0 && p.group(slab, t) >= 0) this.show_pick({ slab, t, kind: "up", a: -1, b: -1, at });
+    const storey = this.model.storey_at(at[2]), { size, hit } = this.model.look_up(at);
+    this.pin = { at, slab: storey, text: place.code };
+    const { side } = this.stage;
+    this.stage.fly_to(at, storey, place.span ? place.span : size === null ? side / 10 : Math.min(side, Math.max(size * 40, side / 200)));
+    if (hit) this.show_pick(hit);
     say(`${place.code} at ${short(at[0])}, ${short(at[1])} mm`);
   }
   place_pins() {
@@ -357,7 +387,7 @@ class Page {
     const head = ["", "prisms", "volume, mm\u00b3", "mean q_p", "by volume", "worst", "min angle", "max aspect"];
     const rows = (groups) => groups.map(([name, prisms, volume, mean, weighted, worst, angle, aspect]) =>
       [name, grouped(prisms), short(volume * 1e9), mean.toFixed(3), weighted.toFixed(3), short(worst, 3), `${angle.toFixed(1)}\u00b0`, short(aspect, 3)]);
-    const { layers, materials, nets } = tables.quality;
+    const { layers, materials, nets } = tables.quality ?? { layers: [], materials: [], nets: [] };
     const host = $("quality_tables");
     for (const [caption, groups] of [["Quality by layer", layers], ["Quality by material", materials], ["Quality by net", nets]])
       if (groups.length > 0) host.append(table(caption, head, rows(groups)));
@@ -379,7 +409,7 @@ async function start() {
   if (!has_webgl()) throw new Error("This browser has no WebGL 2, so the 3D view stays empty. Tables and plots are here all the same.");
   const arrays = await decode($("mesh").textContent, tables.arrays);
   $("mesh").remove();
-  const page = new Page(new Prisms(tables, arrays));
+  const page = new Page(tables.kind === "cells" ? new Cells(tables, arrays) : new Prisms(tables, arrays));
   $("loading").hidden = true;
   return page;
 }

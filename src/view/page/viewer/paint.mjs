@@ -1,21 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Colours of faces: the same choices as src/view/paint.cpp, whose palette comes with the tables.
 
-export const modes = [
-  ["material", "Material"],
-  ["net", "Net"],
-  ["layer", "Layer"],
-  ["group", "Volume group"],
-  ["tag", "Face tag"],
-  ["q_p", "Prism quality q_p"],
-  ["q_t", "Triangle quality q_t"],
-  ["size", "Longest edge"],
-];
 export const is_continuous = (mode) => mode === "q_p" || mode === "q_t" || mode === "size";
 
-const rgb = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));
-const blend = (a, b, share) => a.map((v, i) => v + share * (b[i] - v));
-const untagged = [150, 156, 163];
+export const rgb = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));
+export const blend = (a, b, share) => a.map((v, i) => v + share * (b[i] - v));
+export const no_value = [150, 156, 163];
+export function colour_at(ramp, x) {
+  const p = Math.min(Math.max(x, 0), 1) * (ramp.length - 1), i = Math.min(p | 0, ramp.length - 2);
+  return blend(ramp[i], ramp[i + 1], p - i);
+}
 
 export class Paint {
   constructor(prisms, mode) {
@@ -37,25 +31,22 @@ export class Paint {
     for (let i = 0; i < walls.tag.length; ++i)
       this.wall_tags.set((walls.slab[i] * num_points + walls.a[i]) * num_points + walls.b[i], walls.tag[i]);
   }
-  at(x) {
-    const p = Math.min(Math.max(x, 0), 1) * (this.ramp.length - 1), i = Math.min(p | 0, this.ramp.length - 2);
-    return blend(this.ramp[i], this.ramp[i + 1], p - i);
+  value(slab, t, sublayer) {
+    return this.mode === "q_p" ? this.prisms.prism_quality(slab, t, this.prisms.z[sublayer + 1] - this.prisms.z[sublayer]) : this.mode === "q_t" ? this.prisms.triangle_quality(t) : this.prisms.longest[t];
   }
-  value(slab, t) {
-    return this.mode === "q_p" ? this.prisms.prism_quality(slab, t) : this.mode === "q_t" ? this.prisms.triangle_quality(t) : this.prisms.longest[t];
-  }
-  /// kind: "up", "down", "wall" or "section"; a, b: planar edge of a wall, the cell to its left.
-  face(kind, slab, t, a, b) {
+  /// kind: "up", "down", "wall" or "section"; a, b: planar edge of a wall, the cell to its left; sublayer: of the cell, which
+  /// only q_p asks for. Without it the cell is the one at the face; of walls drawn in one piece, the lowest.
+  face(kind, slab, t, a, b, sublayer = this.prisms.first_sublayer[kind === "up" ? slab + 1 : slab] - (kind === "up" ? 1 : 0)) {
     const { prisms, mode } = this;
     if (is_continuous(mode)) {
-      const value = this.value(slab, t), [low, high] = this.range;
-      return this.at(mode === "size" ? (high > low ? Math.log(value / low) / Math.log(high / low) : 0.5) : (value - low) / (high - low));
+      const value = this.value(slab, t, sublayer), [low, high] = this.range;
+      return colour_at(this.ramp, mode === "size" ? (high > low ? Math.log(value / low) / Math.log(high / low) : 0.5) : (value - low) / (high - low));
     }
     if (mode === "tag") {
       let tag;
       if (kind === "wall") tag = this.wall_tags.get((slab * prisms.num_points + a) * prisms.num_points + b);
       else if (kind !== "section") tag = this.cap_tags.get((2 * prisms.first_sublayer[slab + (kind === "up" ? 1 : 0)] + (kind === "up" ? 1 : 0)) * prisms.num_triangles + t);
-      return tag === undefined ? untagged : this.tags[tag];
+      return tag === undefined ? no_value : this.tags[tag];
     }
     const group = prisms.group(slab, t), own = this.groups[group];
     if (this.kinds[group] !== "mask") return own;

@@ -1,10 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The mesh as the program knows it: planar triangles times slabs. Lengths in millimetres.
+import { Cards } from "./cards.mjs";
 import { unzigzag } from "./decode.mjs";
+import { Paint } from "./paint.mjs";
+import { grouped, length_text, short } from "./panel.mjs";
+import { build, build_rim, build_section, build_tagged, Visibility } from "./skin.mjs";
 
+/// Ye and Daniels, equation 2; beta: sum of the triangle's squared sides.
+export function prism_quality(area, beta, height) {
+  const sum = beta + height * height;
+  return ((32 * Math.sqrt(3)) / 3) * ((area * height) / (sum * Math.sqrt(sum)));
+}
+
+/// What the page asks of a mesh; Cells answers the same. A storey is what the explosion moves as one: here a slab.
 export class Prisms {
   constructor(tables, arrays) {
     this.tables = tables;
+    this.word = "prisms";
+    this.exact_section = true;
     this.num_points = arrays.x.length;
     this.num_triangles = arrays.corner0.length;
     const [x0, y0, step] = tables.grid;
@@ -37,6 +50,159 @@ export class Prisms {
     this.walls = { tag: arrays.wall_tag, slab: arrays.wall_slab, a: arrays.wall_a, b: arrays.wall_b.map((d, i) => arrays.wall_a[i] + unzigzag(d)) };
     this.find_neighbours();
     this.measure();
+    this.z_range = [this.slab_z[0], this.slab_z.at(-1)];
+    this.num_storeys = this.num_slabs;
+  }
+
+  // ---- drawing
+
+  visibility(hidden, is_exploded) {
+    return new Visibility(this, hidden, is_exploded);
+  }
+  paint(mode) {
+    return new Paint(this, mode);
+  }
+  build(visibility, paint, centre) {
+    return build(this, visibility, paint, centre);
+  }
+  build_rim(visibility, paint, centre) {
+    return build_rim(this, visibility, paint, centre);
+  }
+  build_section(visibility, paint, centre, plane) {
+    return build_section(this, visibility, paint, centre, plane);
+  }
+  build_tagged(visibility, wanted, colours, centre) {
+    return build_tagged(this, visibility, wanted, colours, centre);
+  }
+  /// Pictures of layers, for while the view moves.
+  cards() {
+    return new Cards(this);
+  }
+  /// A rough count of triangles before they are made.
+  guess_triangles(visibility, is_exploded) {
+    return this.num_triangles * (is_exploded ? 2 * visibility.num_ranks : 2);
+  }
+  /// Storeys that show, as { storey, low, high }, and the box in the plane around all that shows.
+  extent(visibility) {
+    const { tables, num_slabs, slab_z, corners, column, x, y } = this;
+    const storeys = [];
+    const seen = new Uint8Array(tables.columns.length);
+    for (let s = 0; s < num_slabs; ++s) {
+      let used = false;
+      for (let c = 0; c < seen.length; ++c) if (visibility.classes[c * num_slabs + s] >= 0) used = seen[c] = 1;
+      if (used) storeys.push({ storey: s, low: slab_z[s], high: slab_z[s + 1] });
+    }
+    let [min_x, min_y, max_x, max_y] = [Infinity, Infinity, -Infinity, -Infinity];
+    for (let t = 0; t < this.num_triangles; ++t) {
+      if (!seen[column[t]]) continue;
+      for (let i = 0; i < 3; ++i) {
+        const v = corners[3 * t + i];
+        min_x = Math.min(min_x, x[v]);
+        max_x = Math.max(max_x, x[v]);
+        min_y = Math.min(min_y, y[v]);
+        max_y = Math.max(max_y, y[v]);
+      }
+    }
+    return { storeys, ...(min_x > max_x ? this.box : { min_x, min_y, max_x, max_y }) };
+  }
+  /// Height of what is not hidden.
+  shown_height(hidden) {
+    let sum = 0;
+    for (let s = 0; s < this.num_slabs; ++s)
+      if (this.tables.groups.some((g, i) => !hidden[i] && g.layer === this.layer_of_slab[s])) sum += this.slab_z[s + 1] - this.slab_z[s];
+    return sum;
+  }
+
+  // ---- places
+
+  storey_at(z) {
+    let slab = 0;
+    while (slab + 1 < this.num_slabs && z > this.slab_z[slab + 1]) ++slab;
+    return slab;
+  }
+  /// The cell at a place as something picked, or null; and how large cells are there, mm.
+  look_up(at) {
+    const slab = this.storey_at(at[2]), t = this.locate(at[0], at[1]);
+    return { size: t < 0 ? null : this.longest[t], hit: t >= 0 && this.group(slab, t) >= 0 ? { slab, t, kind: "up", a: -1, b: -1, at } : null };
+  }
+  size_of(hit) {
+    return this.longest[hit.t];
+  }
+  group_of(hit) {
+    return this.group(hit.slab, hit.t);
+  }
+  /// First shown cell under a ray of the stage: { s, slab, t, kind, a, b, at } or null.
+  pick(stage, from, ray) {
+    const { visibility, plane } = stage, thickness = stage.uniforms.thickness.value;
+    const origin = [from.x + stage.centre[0], from.y + stage.centre[1]];
+    let best = null;
+    for (let slab = 0; slab < this.num_slabs; ++slab) {
+      const low = stage.lift(this.slab_z[slab], slab), high = stage.lift(this.slab_z[slab + 1], slab);
+      let s0 = 0, s1 = Infinity;
+      if (Math.abs(ray.z) < 1e-12) {
+        if (from.z < low || from.z > high) continue;
+      } else {
+        const a = (low - from.z) / ray.z, b = (high - from.z) / ray.z;
+        s0 = Math.max(0, Math.min(a, b));
+        s1 = Math.max(a, b);
+      }
+      const kept = stage.kept_part(from, ray, slab);
+      const at_cut = kept[0] > s0;
+      s0 = Math.max(s0, kept[0]);
+      s1 = Math.min(s1, kept[1]);
+      if (!(s0 < s1) || (best && s0 >= best.s)) continue;
+      const hit = this.pierce(origin, [ray.x, ray.y], s0, Math.min(s1, 1e7), (t) => visibility.at(slab, t) >= 0);
+      if (!hit || (best && hit.s >= best.s)) continue;
+      const kind = hit.side >= 0 ? "wall" : at_cut ? "section" : ray.z < 0 ? "up" : "down";
+      const c = this.corners;
+      best = {
+        s: hit.s, slab, t: hit.t, kind,
+        a: hit.side >= 0 ? c[hit.side] : -1,
+        b: hit.side >= 0 ? c[hit.side % 3 === 2 ? hit.side - 2 : hit.side + 1] : -1,
+        at: [origin[0] + hit.s * ray.x, origin[1] + hit.s * ray.y, (from.z + hit.s * ray.z - stage.offset(slab)) / thickness + stage.centre[2]],
+      };
+    }
+    return best;
+  }
+  /// All there is to know about a picked cell.
+  describe(hit) {
+    const { tables } = this;
+    let sublayer = this.first_sublayer[hit.slab];
+    while (sublayer + 1 < this.first_sublayer[hit.slab + 1] && hit.at[2] > this.z[sublayer + 1]) ++sublayer;
+    const height = this.z[sublayer + 1] - this.z[sublayer];
+    const group = tables.groups[this.group(hit.slab, hit.t)], material = tables.materials[group.material];
+    const tag = hit.kind === "section" ? -1 : this.face_tag(hit.kind, hit.slab, hit.t, hit.a, hit.b);
+    return {
+      ...hit, sublayer, prism: this.cell_number(hit.slab, sublayer, hit.t), group: group.name, group_id: group.id,
+      layer: tables.layers[group.layer].name, material: material.name, net: group.net < 0 ? "none" : tables.nets[group.net].name,
+      face_tag: tag < 0 ? "none" : tables.face_tags[tag].name, face_tag_id: tag < 0 ? null : tables.face_tags[tag].id,
+      q_p: this.prism_quality(hit.slab, hit.t, height), q_t: this.triangle_quality(hit.t), longest_mm: this.longest[hit.t], height_mm: height, eps_r: material.eps_r,
+    };
+  }
+  /// The same for people: { title, rows: [name, value], spoken }.
+  card(d) {
+    const face = { up: "top face", down: "bottom face", wall: "side face", section: "cut" }[d.kind];
+    return {
+      title: `Prism ${grouped(d.prism)}`,
+      rows: [
+        ["Layer", d.layer], ["Material", `${d.material} (\u03b5r ${short(d.eps_r)})`], ["Net", d.net],
+        ["Volume group", `${d.group_id}: ${d.group}`], [`Face tag, ${face}`, d.face_tag_id === null ? "none" : `${d.face_tag_id}: ${d.face_tag}`],
+        ["Triangle, sub-layer", `${grouped(d.t)}, ${d.sublayer}`], ["q_p, q_t", `${short(d.q_p)}, ${short(d.q_t)}`],
+        ["Longest edge, height", `${length_text(d.longest_mm)}, ${length_text(d.height_mm)}`],
+      ],
+      spoken: `Prism ${d.prism}, layer ${d.layer}, material ${d.material}, net ${d.net}, quality ${short(d.q_p)}`,
+    };
+  }
+  /// Line segments around a described cell, on the stage.
+  outline(d, stage) {
+    const low = stage.lift(this.z[d.sublayer], d.slab), high = stage.lift(this.z[d.sublayer + 1], d.slab);
+    const points = [];
+    for (let i = 0; i < 3; ++i) {
+      const a = this.corners[3 * d.t + i], b = this.corners[3 * d.t + ((i + 1) % 3)];
+      const p = [this.x[a] - stage.centre[0], this.y[a] - stage.centre[1]], q = [this.x[b] - stage.centre[0], this.y[b] - stage.centre[1]];
+      points.push(...p, low, ...q, low, ...p, high, ...q, high, ...p, low, ...p, high);
+    }
+    return points;
   }
 
   /// neighbour[3 t + i]: triangle across the side from corner i to corner i + 1, or -1.
@@ -109,8 +275,7 @@ export class Prisms {
     return (4 * Math.sqrt(3) * this.area[t]) / this.beta[t];
   }
   prism_quality(slab, t, h = this.height(slab)) {
-    const sum = this.beta[t] + h * h;
-    return ((32 * Math.sqrt(3)) / 3) * ((this.area[t] * h) / (sum * Math.sqrt(sum)));
+    return prism_quality(this.area[t], this.beta[t], h);
   }
 
   /// Number of a prism among the cells of every mesh file of the run, from 0 (mesh::MeshSource, PrismSource): group after group,

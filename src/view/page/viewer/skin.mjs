@@ -130,7 +130,7 @@ export function build(prisms, visibility, paint, centre) {
     corner[4 * v + 2] = e2;
     corner[4 * v + 3] = rank;
   };
-  const on = 255;
+  const on = 255, by_sublayer = paint.mode === "q_p";
   for (const kind of kinds) {
     const { values, size } = found[kind];
     const next = starts[kind];
@@ -141,12 +141,13 @@ export function build(prisms, visibility, paint, centre) {
       let v = next[tile];
       if (kind === "wall") {
         const a = corners[side], b = corners[side % 3 === 2 ? side - 2 : side + 1];
-        const [r, g, bl] = paint.face("wall", slab, t, a, b);
+        let [r, g, bl] = paint.face("wall", slab, t, a, b);
         const dx = x[b] - x[a], dy = y[b] - y[a], length = Math.hypot(dx, dy) || 1;
         const light = light_on(dy / length, -dx / length, 0);
-        const cuts = cuts_of(slab), low = slab_z[slab], step = (slab_z[slab + 1] - low) / cuts;
+        const first = prisms.first_sublayer[slab], cuts = cuts_of(slab), whole = cuts < prisms.num_cuts(slab);
         for (let k = 0; k < cuts; ++k) {
-          const z0 = low + k * step, z1 = k + 1 === cuts ? slab_z[slab + 1] : z0 + step;
+          const z0 = prisms.z[first + k], z1 = whole ? slab_z[slab + 1] : prisms.z[first + k + 1];
+          if (by_sublayer && !whole) [r, g, bl] = paint.face("wall", slab, t, a, b, first + k);
           // The diagonal is no edge: the corner opposite to it counts as far away.
           put(v++, x[a], y[a], z0, r * light, g * light, bl * light, on, on, 0, rank);
           put(v++, x[b], y[b], z0, r * light, g * light, bl * light, 0, on, 0, rank);
@@ -209,7 +210,9 @@ export function build_section(prisms, visibility, paint, centre, plane) {
     if (plane.axis === 2) {
       for (let s = 0; s < num_slabs; ++s) {
         if (!(slab_z[s] < at && at < slab_z[s + 1]) || visibility.at(s, t) < 0) continue;
-        const c = paint.face("section", s, t, -1, -1).map((k) => k * light), rank = Math.min(255, visibility.rank[s]);
+        let k = prisms.first_sublayer[s];
+        while (prisms.z[k + 1] < at) ++k;
+        const c = paint.face("section", s, t, -1, -1, k).map((v) => v * light), rank = Math.min(255, visibility.rank[s]);
         const order = plane.keep_above ? [1, 0, 2] : [0, 1, 2];
         order.forEach((i, k) => put([x[v[i]], y[v[i]], at], c, [k === 0 ? 255 : 0, k === 1 ? 255 : 0, k === 2 ? 255 : 0], rank));
       }
@@ -229,10 +232,11 @@ export function build_section(prisms, visibility, paint, centre, plane) {
     if (hits[0][other] < hits[1][other] !== ascending) hits.reverse();
     for (let s = 0; s < num_slabs; ++s) {
       if (visibility.at(s, t) < 0) continue;
-      const c = paint.face("section", s, t, -1, -1).map((k) => k * light), rank = Math.min(255, visibility.rank[s]);
-      const cuts = prisms.num_cuts(s), step = (slab_z[s + 1] - slab_z[s]) / cuts;
-      for (let k = 0; k < cuts; ++k) {
-        const z0 = slab_z[s] + k * step, z1 = z0 + step, [p, q] = hits;
+      const rank = Math.min(255, visibility.rank[s]), [p, q] = hits;
+      let c = null;
+      for (let k = prisms.first_sublayer[s]; k < prisms.first_sublayer[s + 1]; ++k) {
+        const z0 = prisms.z[k], z1 = prisms.z[k + 1];
+        if (!c || paint.mode === "q_p") c = paint.face("section", s, t, -1, -1, k).map((v) => v * light);
         put([p[0], p[1], z0], c, [255, 255, 0], rank);
         put([q[0], q[1], z0], c, [0, 255, 0], rank);
         put([q[0], q[1], z1], c, [0, 255, 255], rank);

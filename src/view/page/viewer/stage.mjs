@@ -6,8 +6,7 @@ import {
   OrthographicCamera, PerspectiveCamera, PlaneGeometry, RGBAFormat, Scene, ShaderMaterial, Vector2, Vector3, Vector4, WebGLRenderer, WebGLRenderTarget,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
-import { Cards } from "./cards.mjs";
-import { build, build_rim, build_section, build_tagged, Visibility } from "./skin.mjs";
+import { light_on } from "./paint.mjs";
 
 const idle_ms = 160;
 const slice_ms = 140;
@@ -21,7 +20,13 @@ const place = `
     beyond = dot(clip.xyz, p) - clip.w;
     return projectionMatrix * modelViewMatrix * vec4(p.xy, p.z * thickness + (rank - middle) * gap, 1.0);
   }`;
+// Faces of cells are seen from either side: from inside what is shown, where a section opens it, they are the cut.
 const vertex_shader = `
+  #ifdef TWO_SIDES
+    attribute vec4 back;
+    varying vec3 behind;
+    varying float is_cut;
+  #endif
   attribute vec4 colour, corner;
   varying vec3 tint;
   varying vec3 inner;
@@ -29,15 +34,30 @@ const vertex_shader = `
   void main() {
     tint = colour.rgb;
     inner = corner.rgb;
+    #ifdef TWO_SIDES
+      behind = back.rgb;
+      is_cut = 1.0 - colour.a;
+    #endif
     gl_Position = place(position, corner.a * 255.0);
   }`;
 const fragment_shader = `
   varying vec3 tint, inner;
   varying float beyond;
   uniform vec3 edge_colour;
+  #ifdef TWO_SIDES
+    varying vec3 behind;
+    varying float is_cut;
+    uniform float cut_light;
+  #endif
   void main() {
     if (beyond > 0.0) discard;
     vec3 c = tint;
+    #ifdef TWO_SIDES
+      if (!gl_FrontFacing || is_cut > 0.5) {
+        gl_FragColor = vec4((gl_FrontFacing ? tint : behind) * cut_light, 1.0);
+        return;
+      }
+    #endif
     #ifdef EDGES
       vec3 pace = max(fwidth(inner), vec3(1e-6));
       vec3 pixels = inner / pace;
@@ -72,11 +92,12 @@ export function has_webgl() {
 }
 
 export class Stage {
-  constructor(canvas, prisms, on_frame) {
-    Object.assign(this, { canvas, prisms, on_frame });
-    const { min_x, min_y, max_x, max_y } = prisms.box;
-    const z = prisms.slab_z;
-    this.centre = [(min_x + max_x) / 2, (min_y + max_y) / 2, (z[0] + z.at(-1)) / 2];
+  /// @param model  Prisms or Cells
+  constructor(canvas, model, on_frame) {
+    Object.assign(this, { canvas, model, on_frame });
+    const { min_x, min_y, max_x, max_y } = model.box;
+    const [low, high] = model.z_range;
+    this.centre = [(min_x + max_x) / 2, (min_y + max_y) / 2, (low + high) / 2];
     this.side = Math.max(max_x - min_x, max_y - min_y);
     this.is_software = this.looks_like_software();
     this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true, powerPreference: "high-performance" });
@@ -86,11 +107,12 @@ export class Stage {
     // Triangles a frame may have, at first by guess, then by the clock.
     this.budget = this.is_software ? 60000 : 4000000;
     this.uniforms = {
-      thickness: { value: 1 }, gap: { value: 0 }, middle: { value: 0 }, clip: { value: new Vector4(0, 0, 0, 1) }, edge_colour: { value: new Vector3(0.07, 0.09, 0.11) },
+      thickness: { value: 1 }, gap: { value: 0 }, middle: { value: 0 }, clip: { value: new Vector4(0, 0, 0, 1) }, edge_colour: { value: new Vector3(0.07, 0.09, 0.11) }, cut_light: { value: 1 },
     };
     const shaders = { uniforms: this.uniforms, vertexShader: vertex_shader, fragmentShader: fragment_shader };
-    this.with_edges = new ShaderMaterial({ ...shaders, defines: { EDGES: 1 }, side: FrontSide });
-    this.plain = new ShaderMaterial({ ...shaders, side: FrontSide });
+    const sides = model.exact_section ? { defines: {}, side: FrontSide } : { defines: { TWO_SIDES: 1 }, side: DoubleSide };
+    this.with_edges = new ShaderMaterial({ ...shaders, ...sides, defines: { ...sides.defines, EDGES: 1 } });
+    this.plain = new ShaderMaterial({ ...shaders, ...sides });
     // What the plane lays open is not cut by it.
     const uncut = { ...shaders, uniforms: { ...this.uniforms, clip: { value: new Vector4(0, 0, 0, 1) } }, side: DoubleSide };
     this.cut_with_edges = new ShaderMaterial({ ...uncut, defines: { EDGES: 1 } });
@@ -145,7 +167,7 @@ export class Stage {
 
   /// Faces anew: after toggles, colours or the first step of exploding.
   show(hidden, paint, is_exploded) {
-    this.visibility = new Visibility(this.prisms, hidden, is_exploded);
+    this.visibility = this.model.visibility(hidden, is_exploded);
     this.paint = paint;
     this.uniforms.middle.value = (this.visibility.num_ranks - 1) / 2;
     this.stale = new Set(["cards", "rim", "faces", "section", "tags"]);
@@ -156,7 +178,7 @@ export class Stage {
   need_faces() {
     if (!this.stale.has("faces")) return;
     this.stale.delete("faces");
-    const arrays = build(this.prisms, this.visibility, this.paint, this.centre);
+    const arrays = this.model.build(this.visibility, this.paint, this.centre, Boolean(this.plane));
     this.ranges = arrays.ranges;
     this.num_faces = arrays.num_faces;
     this.per_side = arrays.per_side;
@@ -172,7 +194,7 @@ export class Stage {
       this.moving.remove(this.rim);
       this.rim.geometry.dispose();
     }
-    this.rim = this.new_mesh(build_rim(this.prisms, this.visibility, this.paint, this.centre), this.plain);
+    this.rim = this.new_mesh(this.model.build_rim(this.visibility, this.paint, this.centre), this.plain);
     this.moving.add(this.rim);
   }
   need_section() {
@@ -183,8 +205,8 @@ export class Stage {
       this.cut.geometry.dispose();
       this.cut = null;
     }
-    if (!this.plane) return;
-    this.cut = this.new_mesh(build_section(this.prisms, this.visibility, this.paint, this.centre, this.plane), this.edges ? this.cut_with_edges : this.cut_plain);
+    if (!this.plane || !this.model.exact_section) return;
+    this.cut = this.new_mesh(this.model.build_section(this.visibility, this.paint, this.centre, this.plane), this.edges ? this.cut_with_edges : this.cut_plain);
     this.always.add(this.cut);
   }
   /// Face tags drawn over everything else in their place. wanted: flag per tag; colours: [r, g, b] per tag.
@@ -202,14 +224,15 @@ export class Stage {
       this.tagged = null;
     }
     if (!this.wanted_tags.wanted.some(Boolean)) return;
-    this.tagged = this.new_mesh(build_tagged(this.prisms, this.visibility, this.wanted_tags.wanted, this.wanted_tags.colours, this.centre), this.tag_material);
+    this.tagged = this.new_mesh(this.model.build_tagged(this.visibility, this.wanted_tags.wanted, this.wanted_tags.colours, this.centre, Boolean(this.plane)), this.tag_material);
     this.always.add(this.tagged);
   }
-  new_mesh({ position, colour, corner }, material) {
+  new_mesh({ position, colour, corner, back }, material) {
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new BufferAttribute(position, 3));
     geometry.setAttribute("colour", new BufferAttribute(colour, 4, true));
     geometry.setAttribute("corner", new BufferAttribute(corner, 4, true));
+    if (back) geometry.setAttribute("back", new BufferAttribute(back, 4, true));
     const mesh = new Mesh(geometry, material);
     mesh.frustumCulled = false;
     return mesh;
@@ -223,7 +246,7 @@ export class Stage {
       card.material.dispose();
     }
     this.cards = [];
-    this.card_maker ??= new Cards(this.prisms);
+    this.card_maker ??= this.model.cards();
     this.card_sides = new Set();
   }
   /// Cards of the side the camera is on; the other side is made when it is first seen.
@@ -231,16 +254,16 @@ export class Stage {
     this.need_cards();
     if (this.card_sides.has(kind)) return;
     this.card_sides.add(kind);
-    const { min_x, min_y, max_x, max_y } = this.prisms.box;
+    const { min_x, min_y, max_x, max_y } = this.model.box;
     const { width, height } = this.card_maker;
     this.card_plane ??= new PlaneGeometry(max_x - min_x, max_y - min_y);
-    for (let s = 0; s < this.prisms.num_slabs; ++s) {
+    for (let s = 0; s < this.model.num_slabs; ++s) {
       const pixels = this.card_maker.draw(kind, s, this.visibility, this.paint);
       if (!pixels) continue;
       const picture = new DataTexture(pixels, width, height, RGBAFormat);
       picture.minFilter = picture.magFilter = LinearFilter;
       picture.needsUpdate = true;
-      const z = this.prisms.slab_z[s + (kind === "up" ? 1 : 0)] - this.centre[2];
+      const z = this.model.slab_z[s + (kind === "up" ? 1 : 0)] - this.centre[2];
       const material = new ShaderMaterial({
         uniforms: { ...this.uniforms, picture: { value: picture }, level: { value: z }, rank: { value: this.visibility.rank[s] } },
         vertexShader: card_vertex_shader, fragmentShader: card_fragment_shader, side: DoubleSide,
@@ -273,6 +296,8 @@ export class Stage {
     this.moved();
   }
   set_section(plane) {
+    // Without cells inside the groups, the faces between them show where the plane opens them.
+    if (!this.model.exact_section && Boolean(plane) !== Boolean(this.plane)) this.stale = this.stale.add("faces").add("tags");
     this.plane = plane;
     this.set_clip();
     this.stale.add("section");
@@ -285,6 +310,7 @@ export class Stage {
       const sign = this.plane.keep_above ? -1 : 1;
       const normal = [0, 0, 0];
       normal[this.plane.axis] = sign;
+      this.uniforms.cut_light.value = light_on(...normal);
       clip.set(...normal, sign * (this.plane.at + 3.7e-8 - this.centre[this.plane.axis]));
     }
   }
@@ -296,43 +322,31 @@ export class Stage {
   // ---- camera
 
   height() {
-    const z = this.prisms.slab_z;
-    return (z.at(-1) - z[0]) * this.uniforms.thickness.value + (this.visibility.num_ranks - 1) * this.uniforms.gap.value;
+    const [low, high] = this.model.z_range;
+    return (high - low) * this.uniforms.thickness.value + (this.visibility.num_ranks - 1) * this.uniforms.gap.value;
   }
-  /// z on the stage of a mesh coordinate in a slab.
+  /// z on the stage of a mesh coordinate in a storey.
   lift(z, slab) {
     return (z - this.centre[2]) * this.uniforms.thickness.value + this.offset(slab);
   }
-  /// How far a slab is moved by the explosion; the middle one stays.
+  /// How far a storey is moved by the explosion; the middle one stays.
   offset(slab) {
     return (this.visibility.rank[slab] - this.uniforms.middle.value) * this.uniforms.gap.value;
   }
+  /// Lowest and highest z of the whole mesh on the stage.
+  ends() {
+    const [low, high] = this.model.z_range;
+    return [this.lift(low, 0), this.lift(high, this.model.num_storeys - 1)];
+  }
   /// Corners of the box around all that is shown, on the stage.
   shown_box() {
-    const { prisms, visibility } = this;
+    const { storeys, min_x, min_y, max_x, max_y } = this.model.extent(this.visibility);
     let low = Infinity, high = -Infinity;
-    for (let s = 0; s < prisms.num_slabs; ++s) {
-      let used = false;
-      for (let c = 0; c < prisms.tables.columns.length && !used; ++c) used = visibility.classes[c * prisms.num_slabs + s] >= 0;
-      if (!used) continue;
-      low = Math.min(low, this.lift(prisms.slab_z[s], s));
-      high = Math.max(high, this.lift(prisms.slab_z[s + 1], s));
+    for (const s of storeys) {
+      low = Math.min(low, this.lift(s.low, s.storey));
+      high = Math.max(high, this.lift(s.high, s.storey));
     }
     if (low > high) low = high = 0;
-    let [min_x, min_y, max_x, max_y] = [Infinity, Infinity, -Infinity, -Infinity];
-    const seen = new Uint8Array(prisms.tables.columns.length);
-    for (let c = 0; c < seen.length; ++c) for (let s = 0; s < prisms.num_slabs; ++s) if (visibility.classes[c * prisms.num_slabs + s] >= 0) seen[c] = 1;
-    for (let t = 0; t < prisms.num_triangles; ++t) {
-      if (!seen[prisms.column[t]]) continue;
-      for (let i = 0; i < 3; ++i) {
-        const v = prisms.corners[3 * t + i];
-        min_x = Math.min(min_x, prisms.x[v]);
-        max_x = Math.max(max_x, prisms.x[v]);
-        min_y = Math.min(min_y, prisms.y[v]);
-        max_y = Math.max(max_y, prisms.y[v]);
-      }
-    }
-    if (min_x > max_x) ({ min_x, min_y, max_x, max_y } = prisms.box);
     return new Box3(new Vector3(min_x - this.centre[0], min_y - this.centre[1], low), new Vector3(max_x - this.centre[0], max_y - this.centre[1], high));
   }
   /// Everything in view from a direction; angles as in pcbmesh render.
@@ -429,11 +443,11 @@ export class Stage {
   /// Ranges of the tiles in view, of the sides that face the camera.
   ranges_in_view() {
     const frustum = new Frustum().setFromProjectionMatrix(new Matrix4().multiplyMatrices(this.camera.projectionMatrix, this.camera.matrixWorldInverse));
-    const { min_x, min_y, max_x, max_y } = this.prisms.box, n = this.per_side;
+    const { min_x, min_y, max_x, max_y } = this.model.box, n = this.per_side;
     const dx = (max_x - min_x) / n, dy = (max_y - min_y) / n;
-    const low = this.lift(this.prisms.slab_z[0], 0), high = this.lift(this.prisms.slab_z.at(-1), this.prisms.num_slabs - 1);
+    const [low, high] = this.ends();
     // Triangles stick out of their tile by up to the longest edge.
-    const out = this.prisms.size_range[1];
+    const out = this.model.size_range[1];
     const in_view = Array.from({ length: n * n }, (_, k) => {
       const x0 = min_x + (k % n) * dx - this.centre[0], y0 = min_y + Math.floor(k / n) * dy - this.centre[1];
       return frustum.intersectsBox(new Box3(new Vector3(x0 - out, y0 - out, low), new Vector3(x0 + dx + out, y0 + dy + out, high)));
@@ -446,7 +460,7 @@ export class Stage {
   }
   /// A rough count before the faces are made.
   looks_small() {
-    return this.prisms.num_triangles * (this.uniforms.gap.value > 0 ? 2 * this.visibility.num_ranks : 2) <= this.budget;
+    return this.model.guess_triangles(this.visibility, this.uniforms.gap.value > 0) <= this.budget;
   }
 
   async draw_moving() {
@@ -459,7 +473,7 @@ export class Stage {
     this.need_section();
     this.need_tags();
     const generation = this.generation;
-    if (this.stale.has("faces") && this.looks_small()) this.need_faces();
+    if (this.stale.has("faces") && (!this.model.cards || this.looks_small())) this.need_faces();
     const ranges = this.stale.has("faces") ? null : this.ranges_in_view();
     const fits = ranges && this.triangles_of(ranges) <= this.budget;
     if (fits) {
@@ -471,7 +485,8 @@ export class Stage {
       await this.finished();
       this.learn(this.triangles_of(ranges), performance.now() - start);
     } else {
-      this.draw_cards();
+      if (this.model.cards) this.draw_cards();
+      else this.draw_largest();
       await this.finished();
       this.times.first_picture ??= performance.now();
     }
@@ -484,11 +499,31 @@ export class Stage {
     this.timer = setTimeout(() => this.refine(generation), this.times.whole_picture ? idle_ms : 0);
   }
   draw_cards() {
-    const z = this.camera.position.z, low = this.lift(this.prisms.slab_z[0], 0), high = this.lift(this.prisms.slab_z.at(-1), this.prisms.num_slabs - 1);
+    const z = this.camera.position.z, [low, high] = this.ends();
     if (z > low) this.need_card_side("up");
     if (z < high) this.need_card_side("down");
     this.need_rim();
     for (const card of this.cards) card.visible = card.userData.kind === "up" ? z > low : z < high;
+    this.renderer.setRenderTarget(null);
+    this.renderer.clear();
+    this.renderer.render(this.moving, this.camera);
+    this.renderer.render(this.always, this.camera);
+  }
+  /// The largest faces, as many as there is time for: what is drawn of cells while the view moves.
+  draw_largest() {
+    const { geometry } = this.faces;
+    const count = Math.floor(this.budget / 2);
+    if (this.largest?.source !== geometry || this.largest.count < count / 2 || this.largest.count > 2 * count) {
+      this.largest?.mesh.geometry.dispose();
+      const largest = new BufferGeometry();
+      for (const [name, attribute] of Object.entries(geometry.attributes)) largest.setAttribute(name, attribute);
+      largest.setIndex(new BufferAttribute(largest_triangles(geometry.attributes.position.array, count), 1));
+      this.largest = { source: geometry, count, mesh: new Mesh(largest, this.faces.material[0]) };
+      this.largest.mesh.frustumCulled = false;
+    }
+    this.largest.mesh.material = this.faces.material[0];
+    this.moving.clear();
+    this.moving.add(this.largest.mesh);
     this.renderer.setRenderTarget(null);
     this.renderer.clear();
     this.renderer.render(this.moving, this.camera);
@@ -571,73 +606,50 @@ export class Stage {
     return [((v.x + 1) / 2) * clientWidth, ((1 - v.y) / 2) * clientHeight];
   }
 
-  /// What is at a pixel of the canvas: { slab, t, kind, a, b, at } or null.
+  /// What is at a pixel of the canvas, as the mesh tells it, or null.
   pick(px, py) {
-    const { prisms, visibility } = this;
     const pointer = new Vector2((px / this.canvas.clientWidth) * 2 - 1, 1 - (py / this.canvas.clientHeight) * 2);
     this.camera.updateMatrixWorld();
     const from = new Vector3().setFromMatrixPosition(this.camera.matrixWorld);
-    const ray = new Vector3(pointer.x, pointer.y, 0.5).unproject(this.camera).sub(from).normalize();
-    const thickness = this.uniforms.thickness.value;
-    const origin = [from.x + this.centre[0], from.y + this.centre[1]];
-    let best = null;
-    for (let slab = 0; slab < prisms.num_slabs; ++slab) {
-      const low = this.lift(prisms.slab_z[slab], slab), high = this.lift(prisms.slab_z[slab + 1], slab);
-      let s0 = 0, s1 = Infinity;
-      if (Math.abs(ray.z) < 1e-12) {
-        if (from.z < low || from.z > high) continue;
-      } else {
-        const a = (low - from.z) / ray.z, b = (high - from.z) / ray.z;
-        s0 = Math.max(0, Math.min(a, b));
-        s1 = Math.max(a, b);
-      }
-      let at_cut = false;
-      if (this.plane) {
-        // Only the part of the ray that was not cut away; z is measured in the slab as it lies in the mesh.
-        const sign = this.plane.keep_above ? -1 : 1, axis = this.plane.axis;
-        const start = axis === 2 ? (from.z - this.offset(slab)) / thickness + this.centre[2] : origin[axis];
-        const speed = axis === 2 ? ray.z / thickness : axis === 0 ? ray.x : ray.y;
-        const cross = (this.plane.at + 3.7e-8 - start) / speed;
-        if (sign * speed > 0) s1 = Math.min(s1, cross);
-        else if (sign * speed < 0 && cross > s0) {
-          s0 = cross;
-          at_cut = true;
-        }
-      }
-      if (!(s0 < s1) || (best && s0 >= best.s)) continue;
-      const hit = prisms.pierce(origin, [ray.x, ray.y], s0, Math.min(s1, 1e7), (t) => visibility.at(slab, t) >= 0);
-      if (!hit || (best && hit.s >= best.s)) continue;
-      const kind = hit.side >= 0 ? "wall" : at_cut ? "section" : ray.z < 0 ? "up" : "down";
-      const c = prisms.corners;
-      best = {
-        s: hit.s, slab, t: hit.t, kind,
-        a: hit.side >= 0 ? c[hit.side] : -1,
-        b: hit.side >= 0 ? c[hit.side % 3 === 2 ? hit.side - 2 : hit.side + 1] : -1,
-        at: [origin[0] + hit.s * ray.x, origin[1] + hit.s * ray.y, (from.z + hit.s * ray.z - this.offset(slab)) / thickness + this.centre[2]],
-      };
-    }
-    return best;
+    return this.model.pick(this, from, new Vector3(pointer.x, pointer.y, 0.5).unproject(this.camera).sub(from).normalize());
+  }
+  /// Part of a ray that the section plane leaves: [s0, s1]; z is measured in the storey as it lies in the mesh.
+  kept_part(from, ray, storey) {
+    if (!this.plane) return [0, Infinity];
+    const { axis, at, keep_above } = this.plane, sign = keep_above ? -1 : 1, thickness = this.uniforms.thickness.value;
+    const start = axis === 2 ? (from.z - this.offset(storey)) / thickness + this.centre[2] : from.getComponent(axis) + this.centre[axis];
+    const speed = axis === 2 ? ray.z / thickness : ray.getComponent(axis);
+    const cross = (at + 3.7e-8 - start) / speed;
+    if (sign * speed > 0) return [0, cross];
+    if (sign * speed < 0) return [Math.max(0, cross), Infinity];
+    return sign * (start - at) > 0 ? [Infinity, 0] : [0, Infinity];
   }
 
-  /// Outlines one prism, or nothing.
+  /// Outlines a described cell, or nothing.
   mark(cell) {
     this.always.remove(this.highlight);
     this.highlight.geometry.dispose();
     if (cell) {
-      const { prisms } = this;
-      const low = this.lift(prisms.z[cell.sublayer], cell.slab), high = this.lift(prisms.z[cell.sublayer + 1], cell.slab);
-      const points = [];
-      for (let i = 0; i < 3; ++i) {
-        const a = prisms.corners[3 * cell.t + i], b = prisms.corners[3 * cell.t + ((i + 1) % 3)];
-        const p = [prisms.x[a] - this.centre[0], prisms.y[a] - this.centre[1]], q = [prisms.x[b] - this.centre[0], prisms.y[b] - this.centre[1]];
-        points.push(...p, low, ...q, low, ...p, high, ...q, high, ...p, low, ...p, high);
-      }
       this.highlight.geometry = new BufferGeometry();
-      this.highlight.geometry.setAttribute("position", new BufferAttribute(new Float32Array(points), 3));
+      this.highlight.geometry.setAttribute("position", new BufferAttribute(new Float32Array(this.model.outline(cell, this)), 3));
       this.highlight.visible = true;
       this.always.add(this.highlight);
     }
     this.marked = cell;
     this.moved();
   }
+}
+
+/// Indices of the `count` largest of the triangles, three corners each.
+function largest_triangles(position, count) {
+  const num = position.length / 9, size = new Float32Array(num);
+  for (let t = 0, i = 0; t < num; ++t, i += 9) {
+    const ux = position[i + 3] - position[i], uy = position[i + 4] - position[i + 1], uz = position[i + 5] - position[i + 2];
+    const vx = position[i + 6] - position[i], vy = position[i + 7] - position[i + 1], vz = position[i + 8] - position[i + 2];
+    size[t] = Math.hypot(uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx);
+  }
+  const least = num > count ? size.slice().sort()[num - count] : 0;
+  const index = [];
+  for (let t = 0; t < num; ++t) if (size[t] >= least) index.push(3 * t, 3 * t + 1, 3 * t + 2);
+  return new Uint32Array(index);
 }
