@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "formats/sink/file_sink.hpp"
+#include "formats/syntax/input_file.hpp"
+#include "pcbmesh/base/error.hpp"
 #include "pcbmesh/mesh/group_names.hpp"
 #include "pcbmesh/mesh/net_measures.hpp"
 
@@ -197,7 +199,37 @@ Json bounding_box(const mesh::PrismMesh& mesh) {
   return {{"min", min}, {"max", max}};
 }
 
+/// Numbers of elements as a mesh holds them.
+void put_counts(Json& tags, const mesh::MeshSource& written, std::int32_t first_face_id) {
+  for (const mesh::ElementGroup& group : written.groups())
+    for (Json& entry : tags[group.dimension == 3 ? "volumes" : "faces"])
+      if (entry["id"] == group.tag + (group.dimension == 2 ? first_face_id : 0))
+        entry[group.dimension == 3 ? "num_cells" : "num_faces"] = group.num_elements;
+}
+
+void write_json(const Json& tags, const std::filesystem::path& file) {
+  FileSink sink(file);
+  // Net names come from other people's files and need not be UTF-8.
+  sink.put(tags.dump(1, ' ', false, Json::error_handler_t::replace));
+  sink.put("\n");
+  sink.commit();
+}
+
 }  // namespace
+
+void carry_tags(const std::filesystem::path& from, const std::filesystem::path& to, double unit_m,
+                const mesh::MeshSource& written) {
+  Json tags;
+  try {
+    tags = Json::parse(syntax::read_whole_file(from));
+    tags.at("unit_m") = unit_m;
+    put_counts(tags, written, 0);
+  } catch (const Json::exception&) {
+    throw Error(ErrorCode::file_syntax, "this is no tags.json of pcbmesh; move it away from the mesh, or write the mesh anew",
+                {.file = from.string()});
+  }
+  write_json(tags, to);
+}
 
 void write_tags(const mesh::PrismMesh& mesh, const std::filesystem::path& file, LengthUnit unit, std::int32_t first_face_id,
                 const mesh::MeshSource* written) {
@@ -208,20 +240,12 @@ void write_tags(const mesh::PrismMesh& mesh, const std::filesystem::path& file, 
   out["layers"] = layers(mesh);
   out["volumes"] = volumes(mesh);
   out["faces"] = faces(mesh, first_face_id);
-  if (written != nullptr)
-    for (const mesh::ElementGroup& group : written->groups())
-      for (Json& entry : out[group.dimension == 3 ? "volumes" : "faces"])
-        if (entry["id"] == group.tag + (group.dimension == 2 ? first_face_id : 0))
-          entry[group.dimension == 3 ? "num_cells" : "num_faces"] = group.num_elements;
+  if (written != nullptr) put_counts(out, *written, first_face_id);
   out["ports"] = ports(mesh);
   out["materials"] = materials(mesh);
   out["nets"] = nets(mesh);
   out["touching_nets"] = touching_nets(mesh);
-  FileSink sink(file);
-  // Net names come from other people's files and need not be UTF-8.
-  sink.put(out.dump(1, ' ', false, Json::error_handler_t::replace));
-  sink.put("\n");
-  sink.commit();
+  write_json(out, file);
 }
 
 }  // namespace pcbmesh::formats::tags_json

@@ -24,4 +24,9 @@ inline constexpr double conductor_sigma_s_per_m = 1e3;
 void write_tags(const mesh::PrismMesh& mesh, const std::filesystem::path& file, LengthUnit unit, std::int32_t first_face_id = 0,
                 const mesh::MeshSource* written = nullptr);
 
+/// The contract of a mesh handed on to the mesh that was made of it: unit and numbers of elements are those of `written`.
+/// @throws Error file_unreadable (201), file_syntax (202) for a file that is none; write_failed (701).
+void carry_tags(const std::filesystem::path& from, const std::filesystem::path& to, double unit_m,
+                const mesh::MeshSource& written);
+
 }  // namespace pcbmesh::formats::tags_json

@@ -20,7 +20,7 @@ void write(mesh::MeshSource& source, const std::filesystem::path& file, const Wr
       vtk::runs_of(source,
                    [&](const mesh::ElementBlock& block) { return options.faces || mesh::dimension_of(block.kind) == 3; }),
       true, progress);
-  write_vtu(piece, file, options, source.unit_m() / metres_per(options.unit), progress);
+  write_vtu(piece, file, options, source.unit_m() / metres_per(options.unit), progress, &source);
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "formats/vtk/cells.hpp"
 #include "formats/vtk/mesh_assembly.hpp"
 #include "formats/vtu/array_reader.hpp"
+#include "formats/vtu/name_tables.hpp"
 
 namespace pcbmesh::formats::vtu {
 namespace {
@@ -110,6 +111,7 @@ mesh::MeshData read_vtu(const std::filesystem::path& file, const Progress& progr
     progress.check();
   }
   if (!has_piece) reader.fail(*grid, "the file holds no Piece");
+  read_name_tables(reader, *grid, mesh);
   mesh.turn_wedges_if_inside_out();
   return mesh.take();
 }

@@ -80,7 +80,7 @@ void write_parallel(mesh::MeshSource& source, const std::filesystem::path& file,
                        end = whole.num_elements() * (part + 1) / options.num_parts;
     names.push_back(fmt::format("{}.vtu", part));
     const vtk::Piece piece(source, vtk::part_of(all, begin, end - begin), whole.cell_arrays(), progress);
-    write_vtu(piece, folder.file(names.back()), part_options, scale, progress);
+    write_vtu(piece, folder.file(names.back()), part_options, scale, progress, &source);
   }
   FileSink sink(file);
   sink.put(

@@ -7,6 +7,7 @@
 
 #include "formats/sink/file_sink.hpp"
 #include "formats/vtu/array_writer.hpp"
+#include "formats/vtu/name_tables.hpp"
 #include "pcbmesh/base/error.hpp"
 
 namespace pcbmesh::formats::vtu {
@@ -16,8 +17,10 @@ constexpr std::string_view offset_room = "                    ";  // digits of t
 
 class Writer {
  public:
-  Writer(const vtk::Piece& piece, FileSink& sink, const WriteMeshOptions& options, double scale, const Progress& progress)
+  Writer(const vtk::Piece& piece, FileSink& sink, const WriteMeshOptions& options, double scale, const Progress& progress,
+         const mesh::MeshSource* named)
       : piece_(piece),
+        named_(named),
         sink_(sink),
         options_(options),
         scale_(scale),
@@ -39,6 +42,7 @@ class Writer {
   [[nodiscard]] bool is_appended() const { return options_.binary && !options_.base64; }
 
   const vtk::Piece& piece_;
+  const mesh::MeshSource* named_;
   FileSink& sink_;
   const WriteMeshOptions& options_;
   double scale_;
@@ -55,6 +59,7 @@ void Writer::write_opening() {
   if (options_.binary && options_.compression != Compression::none)
     sink_.put(fmt::format(" compressor=\"vtk{}DataCompressor\"", options_.compression == Compression::lz4 ? "LZ4" : "ZLib"));
   sink_.put(fmt::format(">\n <!-- wedges: {} order of corners -->\n <UnstructuredGrid>\n", name_of(options_.vtk_wedge)));
+  if (named_ != nullptr) put_name_tables(sink_, *named_, options_.faces);
   sink_.put(fmt::format("  <Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n", piece_.num_nodes(), piece_.num_elements()));
 }
 
@@ -130,10 +135,10 @@ std::vector<ArrayHead> arrays_of(const vtk::Piece& piece, std::size_t bytes_of_i
 }
 
 void write_vtu(const vtk::Piece& piece, const std::filesystem::path& file, const WriteMeshOptions& options, double scale,
-               const Progress& progress) {
+               const Progress& progress, const mesh::MeshSource* named) {
   const std::size_t bytes_of_index = vtk::index_bytes(piece, options, file);
   FileSink sink(file, expected_bytes(arrays_of(piece, bytes_of_index), options));
-  Writer(piece, sink, options, scale, progress).write();
+  Writer(piece, sink, options, scale, progress, named).write();
   progress.check();
   sink.commit();
 }

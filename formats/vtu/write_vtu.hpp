@@ -23,8 +23,8 @@ struct ArrayHead {
 /// Points, Cells, CellData: the arrays of a piece in the order of the file.
 [[nodiscard]] std::vector<ArrayHead> arrays_of(const vtk::Piece& piece, std::size_t bytes_of_index);
 
-/// One .vtu file. @param scale  written units per unit of the source.
+/// One .vtu file. @param scale  written units per unit of the source. @param named  whose names go into the file, if any.
 void write_vtu(const vtk::Piece& piece, const std::filesystem::path& file, const WriteMeshOptions& options, double scale,
-               const Progress& progress);
+               const Progress& progress, const mesh::MeshSource* named = nullptr);
 
 }  // namespace pcbmesh::formats::vtu

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "formats/tags_json/tags_json.hpp"
 #include "pcbmesh/base/error.hpp"
 #include "pcbmesh/extrude/tetrahedral_source.hpp"
 #include "pcbmesh/formats/registry.hpp"
@@ -23,16 +24,38 @@ struct Options {
   bool ascii = false, quiet = false;
 };
 
+std::filesystem::path tags_beside(std::filesystem::path mesh) {
+  if (mesh.extension() == ".gz" || mesh.extension() == ".xz") mesh.replace_extension();
+  return mesh.replace_extension(".tags.json");
+}
+
 /// A mesh file does not say its unit; the tags.json beside it may.
 double input_unit_m(const Options& options) {
   if (!options.input_unit.empty()) return metres_per(parse_length_unit(options.input_unit));
-  std::filesystem::path tags(options.in);
-  if (tags.extension() == ".gz" || tags.extension() == ".xz") tags.replace_extension();
-  tags.replace_extension(".tags.json");
+  const std::filesystem::path tags = tags_beside(options.in);
   if (std::filesystem::exists(tags)) return validation::read_expectation(tags.string()).unit_m;
   throw Error(ErrorCode::usage,
               "--unit needs to know the unit of the input, and no tags.json lies beside it; give --input-unit m, mm or um",
               {.file = options.in});
+}
+
+/// The tags.json of the input becomes that of the output; its name, empty if there is none to hand on.
+std::string carry_tags(const Options& options, const mesh::MeshSource& written) {
+  const std::filesystem::path from = tags_beside(options.in), to = tags_beside(options.out);
+  if (!std::filesystem::exists(from)) return {};
+  const double old_unit_m = validation::read_expectation(from.string()).unit_m;
+  const double unit_m = options.unit.empty() ? old_unit_m : metres_per(parse_length_unit(options.unit));
+  if (std::filesystem::weakly_canonical(from) == std::filesystem::weakly_canonical(to)) {
+    if (unit_m == old_unit_m && options.split.empty()) return to.string();
+    fmt::print(
+        stderr,
+        "note: {} tells of the input, which has another unit or other cells; give the output another name, and it gets a "
+        "tags.json of its own\n",
+        from.string());
+    return {};
+  }
+  formats::tags_json::carry_tags(from, to, unit_m, written);
+  return to.string();
 }
 
 /// What goes into no file or only half: an engineer must not find out in the solver.
@@ -81,13 +104,14 @@ int run(const Options& options) {
   write.faces = true;  // all of the input, where the format leaves the choice
   formats::write_mesh(source, options.out, write, options.to, progress);
   clear_progress();
+  const std::string tags = carry_tags(options, source);
   if (!options.quiet) {
     say_what_is_lost(mesh, read, source, *format);
     std::map<mesh::ElementKind, std::int64_t> counts;
     for (const mesh::ElementBlock& block : source.blocks()) counts[block.kind] += block.count;
     std::string text;
     for (const auto& [kind, count] : counts) text += fmt::format(", {} {}", count, mesh::name_of(kind));
-    fmt::print("{}: {} nodes{}\n", options.out, source.num_nodes(), text);
+    fmt::print("{}: {} nodes{}{}{}\n", options.out, source.num_nodes(), text, tags.empty() ? "" : "; ", tags);
   }
   return 0;
 }

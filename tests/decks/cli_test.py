@@ -167,6 +167,24 @@ class Cli(unittest.TestCase):
         self.assertEqual(target.read_text(), "old")
         self.assertEqual([name for name in self.leftovers() if name.endswith(".part")], [])
 
+    def test_convert_hands_the_tags_on(self):
+        run("mesh", SERPENTINE, "--air", "0", "-o", self.out / "a.msh", "--no-check")
+        done = run("convert", self.out / "a.msh", self.out / "b.vtu", "--split", "tets", "--unit", "mm")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        tags = json.loads((self.out / "b.tags.json").read_text())
+        self.assertEqual(tags["unit_m"], 1e-3)
+        old = json.loads((self.out / "a.tags.json").read_text())
+        self.assertEqual([v["num_cells"] for v in tags["volumes"]], [3 * v["num_cells"] for v in old["volumes"]])
+        self.assertEqual(run_json("check", self.out / "b.vtu")["findings"], [], "volumes, names and counts hold in the new unit")
+        # One tags.json can't tell of two meshes of different units.
+        done = run("convert", self.out / "a.msh", self.out / "a.inp", "--unit", "mm")
+        self.assertIn("another name", done.stderr)
+        self.assertEqual(json.loads((self.out / "a.tags.json").read_text()), old)
+        (self.out / "a.tags.json").write_text("{}")
+        done = run("convert", self.out / "a.msh", self.out / "c.vtu")
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("tags.json", done.stderr)
+
     def test_a_full_disk_ends_in_exit_5_the_old_file_and_no_debris(self):
         script = 'mount -t tmpfs -o size=400k none "$1" 2>/dev/null || exit 77; echo old > "$1/x.msh"; cd "$1"; "$2" mesh "$3" --air 0 --longest-edge 50um -o x.msh 2>&1; code=$?; ls; cat x.msh; exit $code'
         done = subprocess.run(["unshare", "-m", "sh", "-c", script, "sh", self.out, PROGRAM, SERPENTINE], capture_output=True, text=True, timeout=120)

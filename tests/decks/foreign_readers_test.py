@@ -4,6 +4,7 @@
 way round, VTK's own cell validator."""
 import json
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -149,9 +150,15 @@ def check_vtu_family(folder):
     for stem, options in variants.items():
         make(folder, "-o", f"{stem}.vtu", *options)
         tags = read_tags(folder, stem)
-        check_grid(f"{stem}.vtu", tags, read_vtk(vtk.vtkXMLUnstructuredGridReader(), folder / f"{stem}.vtu"))
+        grid = read_vtk(vtk.vtkXMLUnstructuredGridReader(), folder / f"{stem}.vtu")
+        check_grid(f"{stem}.vtu", tags, grid)
+        codes = grid.GetFieldData().GetArray("volume_names")
+        names = bytes(int(codes.GetValue(i)) for i in range(codes.GetNumberOfValues())).decode().split("\0")[:-1]
+        expect(names == [v["name"] for v in tags["volumes"]], f"{stem}.vtu: names of volumes are {names}")
         if stem != "lz4":  # meshio knows no LZ4
             check_meshio(folder / f"{stem}.vtu", tags)
+            codes = meshio.read(str(folder / f"{stem}.vtu")).field_data["volume_names"]
+            expect(bytes(codes.tolist()).decode().split("\0")[:-1] == names, f"{stem}.vtu: names by meshio")
     make(folder, "-o", "parametric.vtu", "--vtk-wedge", "parametric")
     check_grid("parametric.vtu", read_tags(folder, "parametric"),
                read_vtk(vtk.vtkXMLUnstructuredGridReader(), folder / "parametric.vtu"), [0, 1, 2, 3, 4, 5])
@@ -243,6 +250,8 @@ def without_times(text):
 def check_reading_meshio(folder):
     """What meshio writes, the program reads: the same verdict as on its own file."""
     make(folder, "-o", "own.vtu", "--unit", "um", "--faces")
+    own = folder / "own.vtu"
+    own.write_bytes(re.sub(rb"  <FieldData>.*?</FieldData>\n", b"", own.read_bytes(), flags=re.DOTALL))  # meshio writes no names
     mesh = meshio.read(str(folder / "own.vtu"))
     tags = numpy.concatenate([numpy.where(v > 0, v, f) for v, f in zip(mesh.cell_data["volume_tag"], mesh.cell_data["face_tag"])])
     counts = numpy.cumsum([len(block.data) for block in mesh.cells])[:-1]
