@@ -19,4 +19,19 @@ void put_run_script(const std::filesystem::path& file, std::string_view what, st
   deck.command = {"sh", file.string()};
 }
 
+ResultFiles result_files(const FieldProblem& problem) {
+  const std::string stem = problem.stem();
+  const auto table = [&](const char* ending) {
+    const std::string name = plain(stem) + ending;
+    return ResultFiles{name, name, "cat " + shell_word(name) + "\n"};
+  };
+  if (problem.options.problem == Problem::eigenmode) return table(".modes.txt");
+  if (problem.options.problem == Problem::electrostatic) return table(".capacitance.txt");
+  const std::string rows = plain(stem) + ".ports.txt", network = fmt::format("{}.s{}p", stem, problem.ports.size());
+  return {rows, network,
+          fmt::format("if command -v \"${{PCBMESH:=pcbmesh}}\" > /dev/null; then\n  \"$PCBMESH\" touchstone {} -o {}\nelse\n  "
+                      "echo \"pcbmesh is not on the path; run: pcbmesh touchstone {} -o {}\" >&2\n  exit 1\nfi\n",
+                      shell_word(rows), shell_word(network), rows, plain(network))};
+}
+
 }  // namespace pcbmesh::formats::deck

@@ -2,9 +2,10 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 
-#include "pcbmesh/formats/deck.hpp"
+#include "formats/deck/field_problem.hpp"
 
 namespace pcbmesh::formats::deck {
 
@@ -13,5 +14,13 @@ void put_file(const std::filesystem::path& file, std::string_view text, Deck& de
 
 /// Writes x.run.sh and makes it the deck's command: goes to its own folder, then does what `body` says.
 void put_run_script(const std::filesystem::path& file, std::string_view what, std::string_view body, Deck& deck);
+
+/// Where results go, for solvers whose decks write the tables that pcbmesh reads.
+struct ResultFiles {
+  std::string written;  ///< by the solver
+  std::string final;    ///< what the command ends in: a Touchstone file for a driven problem
+  std::string after;    ///< lines of the run script from one to the other
+};
+[[nodiscard]] ResultFiles result_files(const FieldProblem& problem);
 
 }  // namespace pcbmesh::formats::deck

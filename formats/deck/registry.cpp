@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <array>
 
+#include "formats/dolfinx/format.hpp"
 #include "formats/elmer_deck/format.hpp"
 #include "formats/getdp/format.hpp"
+#include "formats/mfem_deck/format.hpp"
 #include "formats/palace/format.hpp"
 #include "pcbmesh/base/error.hpp"
 #include "pcbmesh/formats/deck.hpp"
@@ -14,7 +16,8 @@ namespace pcbmesh::formats {
 namespace {
 
 // The table: a new solver is one include above and one entry here.
-constexpr std::array<const DeckFormat*, 3> deck_table{&getdp::deck_format, &palace::deck_format, &elmer_deck::deck_format};
+constexpr std::array<const DeckFormat*, 5> deck_table{&getdp::deck_format, &palace::deck_format, &elmer_deck::deck_format,
+                                                      &dolfinx::deck_format, &mfem_deck::deck_format};
 
 }  // namespace
 

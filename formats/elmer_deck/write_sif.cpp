@@ -44,8 +44,9 @@ std::string bodies(const deck::FieldProblem& problem) {
                        deck::plain(volume.name), volume.id);
     out += fmt::format("Material {}  ! {}\n  Relative Permittivity = Real {}\n", i + 1, deck::plain(m.name), m.eps_r);
     if (problem.options.problem != Problem::electrostatic) {
-      out += fmt::format("  Relative Permittivity im = Real {}\n  Relative Reluctivity = Real {}\n", m.eps_r * m.tan_delta,
-                         1 / m.mu_r);
+      out += fmt::format(
+          "  Relative Permeability = Real {}\n  Relative Reluctivity = Real {}\n  Relative Permittivity im = Real {}\n", m.mu_r,
+          1 / m.mu_r, m.eps_r * m.tan_delta);
       if (m.sigma_s_per_m > 0) out += fmt::format("  Electric Conductivity = Real {}\n", m.sigma_s_per_m);
     }
     out += "End\n";
@@ -65,14 +66,15 @@ std::string port(const deck::FieldProblem& problem, const deck::FieldPort& port,
   if (is_fed)
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (std::abs(p.direction[axis]) > 1e-12)
-        out += fmt::format("  Magnetic Boundary Load {} im = {}", axis + 1,
+        out += fmt::format("  Magnetic Boundary Load im {} = {}", axis + 1,
                            over_sweep(problem.options.frequencies_hz,
                                       2 * admittance * p.direction[axis] / (p.length_m * deck::light_m_per_s)));
   return out;
 }
 
 std::string boundary(const deck::FieldProblem& problem, const deck::Face& face, std::size_t excited) {
-  constexpr const char* metal = "  E re {e} = Real 0\n  E im {e} = Real 0\n";
+  const bool is_eigenmode = problem.options.problem == Problem::eigenmode;
+  const char* const metal = is_eigenmode ? "  E {e} = Real 0\n" : "  E re {e} = Real 0\n  E im {e} = Real 0\n";
   switch (face.condition) {
     case BoundaryCondition::pec:
       return metal;
@@ -81,7 +83,7 @@ std::string boundary(const deck::FieldProblem& problem, const deck::Face& face, 
     case BoundaryCondition::impedance:
       return robin(problem.options, deck::free_space_ohm / face.impedance_ohm);
     case BoundaryCondition::conductor:
-      if (problem.options.problem == Problem::eigenmode) return metal;
+      if (is_eigenmode) return metal;
       return fmt::format(
           "  Good Conductor BC = Logical True\n  Layer Electric Conductivity = Real {}\n  Layer Relative Reluctivity = Real "
           "{}\n",
@@ -105,7 +107,7 @@ std::string static_boundary(const deck::FieldProblem& problem, const deck::Face&
 std::string solvers(const deck::FieldProblem& problem, std::size_t excited) {
   const std::string stem = deck::plain(problem.stem());
   constexpr const char* direct =
-      "  Linear System Solver = Direct\n  Linear System Direct Method = MUMPS\n  Linear System Complex = Logical True\n";
+      "  Linear System Solver = Direct\n  Linear System Direct Method = Umfpack\n  Linear System Complex = Logical True\n";
   if (problem.options.problem == Problem::electrostatic)
     return fmt::format(
         "Equation 1\n  Active Solvers(1) = 1\nEnd\nSolver 1\n  Equation = \"Electrostatics\"\n  Procedure = \"StatElecSolve\" "
@@ -115,21 +117,29 @@ std::string solvers(const deck::FieldProblem& problem, std::size_t excited) {
         "System Iterative Method = BiCGStab\n  Linear System Preconditioning = ILU1\n  Linear System Max Iterations = 2000\n  "
         "Linear System Convergence Tolerance = 1e-10\nEnd\n",
         problem.conductors.size(), stem);
+  if (problem.options.problem == Problem::eigenmode)
+    // VectorHelmholtz knows one frequency; resonances are EMWaveSolver's.
+    return fmt::format(
+        "Equation 1\n  Active Solvers(1) = 1\nEnd\nSolver 1\n  Equation = \"VectorWave\"\n  Variable = E\n  Procedure = "
+        "\"EMWaveSolver\" \"EMWaveSolver\"\n  Use Piola Transform = Logical True\n  Linear System Solver = Direct\n  Linear "
+        "System "
+        "Direct Method = Umfpack\n  Eigen Analysis = Logical True\n  Eigen System Values = Integer {}\n  Eigen System Select = "
+        "smallest magnitude\n  Eigen System Shift = Real {}\nEnd\nSolver 2  ! frequencies in Hz\n  Exec "
+        "Solver = "
+        "After Simulation\n  Equation = \"Modes\"\n  Procedure = \"SaveData\" \"SaveScalars\"\n  Filename = \"{}.modes.dat\"\n "
+        " Save "
+        "Eigenfrequencies = Logical True\nEnd\n",
+        problem.options.modes.number, std::pow(2 * pi * problem.options.modes.above_hz, 2), stem);
   std::string out = "Equation 1\n  Active Solvers(2) = 1 2\n";
-  if (problem.options.problem == Problem::driven)
-    out += "  Angular Frequency = " + over_sweep(problem.options.frequencies_hz, 1);
+  out += "  Angular Frequency = " + over_sweep(problem.options.frequencies_hz, 1);
   out +=
       "End\nSolver 1\n  Equation = \"VectorHelmholtz\"\n  Procedure = \"VectorHelmholtz\" \"VectorHelmholtzSolver\"\n"
       "  Use Piola Transform = Logical True\n";
   out += direct;
-  if (problem.options.problem == Problem::eigenmode)
-    out += fmt::format("  Eigen Analysis = Logical True\n  Eigen System Values = Integer {}\n  Eigen System Shift = Real {}\n",
-                       problem.options.modes.number, std::pow(2 * pi * problem.options.modes.above_hz, 2));
   out +=
       "End\nSolver 2\n  Equation = \"Fields\"\n  Procedure = \"VectorHelmholtz\" \"VectorHelmholtzCalcFields\"\n"
       "  Calculate Electric field = Logical True\n  Linear System Solver = Iterative\n  Linear System Iterative Method = CG\n"
       "  Linear System Max Iterations = 2000\n  Linear System Convergence Tolerance = 1e-9\nEnd\n";
-  if (problem.options.problem != Problem::driven) return out;
   // Voltage over volts of the incident wave: integral of E along the port's direction over its width; S = V - 1 at the fed
   // port.
   out += fmt::format(

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "formats/deck/deck_file.hpp"
 #include "formats/getdp/write_pro.hpp"
 
 namespace pcbmesh::formats::getdp {
@@ -138,7 +139,7 @@ std::string sweep(const deck::FieldProblem& problem, const std::string& results)
 
 std::string driven_pro(const deck::FieldProblem& problem) {
   const double unit_m = metres_per(problem.options.unit);
-  const std::string results = deck::plain(problem.stem()) + ".ports.txt";
+  const std::string results = deck::result_files(problem).written;
   std::vector<std::int32_t> metal = metal_volumes(problem);
   const std::vector<std::int32_t> pec = problem.faces_with(BoundaryCondition::pec);
   metal.insert(metal.end(), pec.begin(), pec.end());

@@ -6,73 +6,42 @@
 #include <array>
 
 #include "formats/deck/deck_file.hpp"
+#include "formats/deck/limits.hpp"
 #include "formats/getdp/write_pro.hpp"
 #include "pcbmesh/base/error.hpp"
 
 namespace pcbmesh::formats::getdp {
 namespace {
 
-using mesh::BoundaryCondition;
+constexpr deck::Limits limits{.solver = "GetDP", .coaxial_ports = true};
 
-void require_expressible(const deck::FieldProblem& problem) {
-  constexpr const char* me = "GetDP";
-  for (const deck::FieldPort& port : problem.ports)
-    if (port.port.kind == mesh::PortKind::wave && problem.options.problem == Problem::driven)
-      deck::refuse(me, fmt::format("wave port '{}'", port.port.name),
-                   "a lumped port across the gap between trace and reference; Palace and Elmer have wave ports");
-  for (const deck::Face& face : problem.faces) {
-    if (face.condition == BoundaryCondition::periodic)
-      deck::refuse(me, fmt::format("the periodic side '{}' in this deck", face.name), "pec, pmc or absorbing there");
-    if (problem.options.problem == Problem::eigenmode &&
-        (face.condition == BoundaryCondition::absorbing || face.condition == BoundaryCondition::impedance ||
-         face.condition == BoundaryCondition::port))
-      deck::refuse(me,
-                   fmt::format("resonances with the {} boundary '{}', which makes the eigenvalue problem non-linear",
-                               mesh::name_of(face.condition), face.name),
-                   "pec or pmc there, or a driven sweep");
-  }
-  for (const deck::Face& face : problem.faces)
-    if (problem.options.problem == Problem::electrostatic && face.kind == mesh::FaceTagKind::conductor && face.net < 0)
-      deck::refuse(me, fmt::format("hollow copper without a net, '{}', which floats", face.name),
-                   "solid copper there, which floats as a body of very high permittivity");
+std::int32_t num_volumes(const mesh::PrismMesh& mesh) {
+  return static_cast<std::int32_t>(mesh.volume_tags().size());
 }
 
 void require(const mesh::PrismMesh& mesh, const DeckOptions& options) {
   Diagnostics ignored;
-  require_expressible(deck::state(mesh, options, static_cast<std::int32_t>(mesh.volume_tags().size()), ignored));
+  (void)deck::state_within(limits, mesh, options, num_volumes(mesh), ignored);
 }
 
 Deck write(const mesh::PrismMesh& mesh, const DeckOptions& options, const std::filesystem::path& folder,
            Diagnostics& diagnostics) {
-  const auto num_volumes = static_cast<std::int32_t>(mesh.volume_tags().size());
-  const deck::FieldProblem problem = deck::state(mesh, options, num_volumes, diagnostics);
-  require_expressible(problem);
+  const deck::FieldProblem problem = deck::state_within(limits, mesh, options, num_volumes(mesh), diagnostics);
   const std::string stem = problem.stem();
-  std::string text;
-  std::string resolution, results, after;
+  const deck::ResultFiles results = deck::result_files(problem);
+  std::string text, resolution;
   switch (options.problem) {
     case Problem::driven:
       text = driven_pro(problem);
       resolution = "Driven";
-      results = fmt::format("{}.s{}p", stem, problem.ports.size());
-      after = fmt::format(
-          "if command -v \"${{PCBMESH:=pcbmesh}}\" > /dev/null; then\n  \"$PCBMESH\" touchstone {} -o {}\nelse\n  echo "
-          "\"pcbmesh is "
-          "not on the path; run: pcbmesh touchstone {} -o {}\" >&2\n  exit 1\nfi\n",
-          deck::shell_word(deck::plain(stem) + ".ports.txt"), deck::shell_word(results), deck::plain(stem) + ".ports.txt",
-          deck::plain(results));
       break;
     case Problem::eigenmode:
       text = eigenmode_pro(problem);
       resolution = "Resonances";
-      results = deck::plain(stem) + ".modes.txt";
-      after = "cat " + deck::shell_word(results) + "\n";
       break;
     case Problem::electrostatic:
       text = electrostatic_pro(problem);
       resolution = "Capacitance";
-      results = deck::plain(stem) + ".capacitance.txt";
-      after = "cat " + deck::shell_word(results) + "\n";
       break;
   }
   Deck deck;
@@ -81,11 +50,11 @@ Deck write(const mesh::PrismMesh& mesh, const DeckOptions& options, const std::f
       folder / (stem + ".run.sh"),
       fmt::format(
           "Solves {} with GetDP (Debian: apt-get install getdp) and ends in {}. GETDP, PCBMESH: where the programs are.",
-          deck::plain(options.mesh), deck::plain(results)),
+          deck::plain(options.mesh), deck::plain(results.final)),
       fmt::format("\"${{GETDP:-getdp}}\" {} -msh {} -solve {} -v 3\n{}", deck::shell_word(stem + ".pro"),
-                  deck::shell_word(options.mesh), resolution, after),
+                  deck::shell_word(options.mesh), resolution, results.after),
       deck);
-  deck.result = results;
+  deck.result = results.final;
   deck.calls_pcbmesh = options.problem == Problem::driven;
   return deck;
 }

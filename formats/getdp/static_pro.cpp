@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "formats/deck/deck_file.hpp"
 #include "formats/getdp/write_pro.hpp"
 #include "pcbmesh/base/error.hpp"
 
@@ -17,7 +18,7 @@ constexpr double floating_eps_r = 1e8;  // a field inside is eight orders below 
 
 std::string eigenmode_pro(const deck::FieldProblem& problem) {
   const double unit_m = metres_per(problem.options.unit);
-  const std::string results = deck::plain(problem.stem()) + ".modes.txt";
+  const std::string results = deck::result_files(problem).written;
   std::vector<std::int32_t> metal = metal_volumes(problem);
   // Loss of the skins is second order in the frequency of a resonance: they are ideal here.
   for (const BoundaryCondition condition : {BoundaryCondition::pec, BoundaryCondition::conductor}) {
@@ -84,7 +85,7 @@ PostOperation {{
 
 std::string electrostatic_pro(const deck::FieldProblem& problem) {
   const double unit_m = metres_per(problem.options.unit);
-  const std::string results = deck::plain(problem.stem()) + ".capacitance.txt";
+  const std::string results = deck::result_files(problem).written;
   std::vector<std::int32_t> field = field_volumes(problem);
   field.insert(field.end(), problem.floating.begin(), problem.floating.end());
   std::vector<std::int32_t> metal, ground;

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "formats/deck/deck_file.hpp"
-#include "formats/deck/field_problem.hpp"
+#include "formats/deck/limits.hpp"
 
 namespace pcbmesh::formats::palace {
 namespace {
@@ -20,22 +20,22 @@ using mesh::BoundaryCondition;
 constexpr double hz_per_ghz = 1e9;
 constexpr int element_order = 2;
 
-void require_expressible(const deck::FieldProblem& problem) {
-  constexpr const char* me = "Palace";
-  for (const deck::Volume& volume : problem.volumes)
-    if (volume.is_conductor)
-      deck::refuse(me,
-                   fmt::format("solid copper, '{}': it has no boundary of its own and no mesh resolves its skin", volume.name),
-                   "hollow or sheet conductors (--conductors hollow): their skins become conductivity or PEC boundaries");
-  for (const deck::Face& face : problem.faces)
-    if (face.condition == BoundaryCondition::periodic)
-      deck::refuse(me, fmt::format("the periodic side '{}' without a matching mesh", face.name), "pec, pmc or absorbing there");
+constexpr deck::Limits limits{.solver = "Palace",
+                              .solid_copper = false,
+                              .wave_ports = true,
+                              .coaxial_ports = true,
+                              .lossy_resonances = true,
+                              .floating_skins = true};
+
+deck::FieldProblem state(const mesh::PrismMesh& mesh, const DeckOptions& options, Diagnostics& diagnostics) {
+  deck::FieldProblem problem = deck::state_within(limits, mesh, options, 0, diagnostics);
   for (const deck::FieldPort& port : problem.ports)
     if (port.port.kind == mesh::PortKind::wave)
       for (const deck::Face& face : problem.faces)
         if (face.is_inner && std::ranges::find(port.faces, face.id) != port.faces.end())
-          deck::refuse(me, fmt::format("wave port '{}' inside the domain", port.port.name),
+          deck::refuse(limits.solver, fmt::format("wave port '{}' inside the domain", port.port.name),
                        "a lumped port there, or the port on the hull");
+  return problem;
 }
 
 /// "+Z" along an axis, "-R" towards the axis of a ring, else a unit vector.
@@ -144,13 +144,12 @@ Json solver(const DeckOptions& options) {
 
 void require(const mesh::PrismMesh& mesh, const DeckOptions& options) {
   Diagnostics ignored;
-  require_expressible(deck::state(mesh, options, 0, ignored));
+  (void)state(mesh, options, ignored);
 }
 
 Deck write(const mesh::PrismMesh& mesh, const DeckOptions& options, const std::filesystem::path& folder,
            Diagnostics& diagnostics) {
-  const deck::FieldProblem problem = deck::state(mesh, options, 0, diagnostics);
-  require_expressible(problem);
+  const deck::FieldProblem problem = state(mesh, options, diagnostics);
   constexpr std::array<const char*, 3> types{"Driven", "Eigenmode", "Electrostatic"};
   const std::string stem = problem.stem();
   const double unit_m = metres_per(options.unit);

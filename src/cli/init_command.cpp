@@ -12,6 +12,7 @@
 #include "pcbmesh/formats/registry.hpp"
 #include "pcbmesh/pipeline/start_study.hpp"
 #include "pcbmesh/pipeline/write_outputs.hpp"
+#include "src/cli/begin_study.hpp"
 #include "src/cli/commands.hpp"
 #include "src/cli/study_options.hpp"
 #include "src/cli/terminal.hpp"
@@ -25,10 +26,10 @@ struct Options {
   std::shared_ptr<StudyOptions> study;
 };
 
-pipeline::StartedStudy started_from(const Options& options, study::Study study) {
+pipeline::StartedStudy started_from(const Options& options, BegunStudy begun) {
   const Progress progress = terminal_progress(options.quiet);
   const formats::ReadBoardResult read = formats::read_board(options.board, options.from, progress);
-  pipeline::StartedStudy started = pipeline::start_study(read.board, std::move(study));
+  pipeline::StartedStudy started = settle_study(read.board, *options.study, std::move(begun));
   clear_progress();
   if (options.quiet) return started;
   print_diagnostics(read.diagnostics);
@@ -37,37 +38,16 @@ pipeline::StartedStudy started_from(const Options& options, study::Study study) 
   return started;
 }
 
-/// The solver's demands come when its ports are there: a study that is begun has none yet.
-study::Study begun_study(const StudyOptions& options, study::Solver& solver) {
-  StudyOptions without = options;
-  without.solver.clear();
-  study::Study study = study_from(without);
-  solver = options.solver.empty() ? study.solver : study::parse_solver(options.solver);
-  study.solver = study::Solver::none;
-  return study;
-}
-
 int run_init(const Options& options) {
-  study::Solver solver = study::Solver::none;
-  study::Study study = begun_study(*options.study, solver);
-  if (study.nets.empty())
+  BegunStudy begun = begin_study(*options.study);
+  if (begun.study.nets.empty())
     throw Error(ErrorCode::usage, "name the nets of interest, e.g. --nets /USB_P,/USB_N; `pcbmesh inspect` lists all");
   const std::filesystem::path file = options.output;
   const std::filesystem::path schema = file.parent_path() / "study.schema.json";
   if (!options.force && std::filesystem::exists(file))
     throw Error(ErrorCode::write_failed, "the file exists; --force overwrites it", {.file = file.string()});
-  // What an engineer asks first: S-parameters up to some GHz, with the inside of the copper left out.
-  const StudyOptions& given = *options.study;
-  if (given.file.empty() && given.conductors.empty()) study.conductors = study::ConductorMode::hollow;
-  if (solver == study::Solver::dolfinx) {
-    // It has edge elements on tetrahedra alone, and no deck here: capacitances on the mesh's twin are what it can do at once.
-    if (given.file.empty() && given.problem.empty()) study.problem = study::Problem::electrostatic;
-    if (given.file.empty() && given.split.empty()) study.split = study::ElementSplit::tetrahedra;
-  }
-  if (!study.sweep && study.problem == study::Problem::driven) study.sweep = study::Sweep{1e8, 1e10, 100, {}};
-  pipeline::StartedStudy started = started_from(options, std::move(study));
-  started.study.solver = solver;
-  study::check(started.study);
+  take_first_answers(*options.study, begun.study);
+  const pipeline::StartedStudy started = started_from(options, std::move(begun));
   const std::string note = fmt::format(
       "Begun for nets {}. Ports were placed where pins and planes allow; every field is explained in study.schema.json. Mesh "
       "it "
@@ -88,14 +68,14 @@ int run_init(const Options& options) {
 }
 
 int run_ports(const Options& options) {
-  study::Solver solver = study::Solver::none;
-  study::Study study = begun_study(*options.study, solver);
-  if (study.nets.empty())
+  BegunStudy begun = begin_study(*options.study);
+  begun.solver = study::Solver::none;
+  if (begun.study.nets.empty())
     throw Error(ErrorCode::usage,
                 "name the nets that ports are wanted for, e.g. --nets /USB_P,/USB_N; with --region they are cut "
                 "there");
-  study.ports.clear();
-  const pipeline::StartedStudy started = started_from(options, std::move(study));
+  begun.study.ports.clear();
+  const pipeline::StartedStudy started = started_from(options, std::move(begun));
   fmt::print("{}", study::ports_json(started.study, {"", "", started.port_notes}));
   return started.study.ports.empty() ? 1 : 0;
 }

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "pcbmesh/base/error.hpp"
@@ -13,6 +15,7 @@
 #include "pcbmesh/pipeline/mesh_board.hpp"
 #include "pcbmesh/pipeline/write_outputs.hpp"
 #include "pcbmesh/view/report.hpp"
+#include "src/cli/begin_study.hpp"
 #include "src/cli/commands.hpp"
 #include "src/cli/explain_text.hpp"
 #include "src/cli/mesh_or_draw.hpp"
@@ -59,14 +62,35 @@ pipeline::OutputOptions output_options(const Options& options, LengthUnit unit) 
       {options.outputs.begin(), options.outputs.end()}, options.to, write, !options.no_check, options.threads, options.board};
 }
 
+/// A study begun from nets and a solver alone gets its ports; where they are is said.
+study::Study with_ports(const board::Board& board, const Options& options, BegunStudy begun) {
+  const std::string nets = fmt::format("{}", fmt::join(begun.study.nets, ", "));
+  const std::size_t points = begun.study.sweep->frequencies_hz().size();
+  pipeline::StartedStudy started = settle_study(board, *options.study, std::move(begun));
+  if (options.quiet) return started.study;
+  print_diagnostics(started.diagnostics);
+  for (const std::string& text : started.left_out) fmt::print(stderr, "no port at {}\n", text);
+  for (std::size_t i = 0; i < started.study.ports.size(); ++i)
+    fmt::print(stderr, "port {} on net {} against {}: {}\n", started.study.ports[i].name, started.study.ports[i].net,
+               started.study.ports[i].reference, started.port_notes[i]);
+  fmt::print(stderr, "Begun for nets {}: {} frequencies; `pcbmesh init` writes such a study down for you to edit.\n", nets,
+             points);
+  return started.study;
+}
+
 int run(const Options& options) {
-  const study::Study study = study_from(*options.study);
+  BegunStudy begun = begin_study(*options.study);
+  const bool is_begun_here = wants_ports(begun);
+  if (is_begun_here) take_first_answers(*options.study, begun.study);
+  study::Study study = is_begun_here ? begun.study : study_from(*options.study);
+  study.solver = begun.solver;
   pipeline::OutputOptions output = output_options(options, study.unit);
   prepare_for_solver(study, options.board, output);
   pipeline::require_writable(output, options.board);
   const Progress progress = terminal_progress(options.quiet);
   progress.at("read", 0);
   const formats::ReadBoardResult read = formats::read_board(options.board, options.from, progress);
+  if (is_begun_here) study = with_ports(read.board, options, std::move(begun));
   pipeline::MeshBoardResult result = mesh_or_draw(
       read.board, study, options.outputs.empty() ? std::filesystem::path() : std::filesystem::path(options.outputs.front()),
       progress);
@@ -191,7 +215,7 @@ Command add_mesh_command(CLI::App& program) {
       "  pcbmesh mesh board.kicad_pcb -o board.msh\n"
       "  pcbmesh mesh board.kicad_pcb --nets /USB_P,/USB_N --frequency 10GHz -o usb.msh -o usb.vtu\n"
       "  pcbmesh mesh board.kicad_pcb --region 10mm,-30mm,25mm,-18mm --hollow GND -o part.msh\n"
-      "  pcbmesh mesh board.kicad_pcb --nets /USB_P,/USB_N --study usb.json --for getdp -o out/\n"
+      "  pcbmesh mesh board.kicad_pcb --nets /USB_P,/USB_N --for getdp -o out/\n"
       "  pcbmesh mesh examples/serpentine.json --air 0 --policy minimum --sublayers floor -o serpentine.msh");
   return {command, [options] { return run(*options); }};
 }

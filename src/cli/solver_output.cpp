@@ -9,6 +9,7 @@
 
 #include "formats/deck/field_problem.hpp"
 #include "pcbmesh/base/error.hpp"
+#include "pcbmesh/formats/registry.hpp"
 
 namespace pcbmesh::cli {
 namespace {
@@ -42,24 +43,27 @@ bool writes_deck(const study::Study& study) {
 }
 
 void prepare_for_solver(const study::Study& study, const std::string& board, pipeline::OutputOptions& output) {
-  // MFEM up to 4.9 misreads later versions without a word.
-  if (study.solver == study::Solver::mfem && output.write.version.empty()) output.write.version = "2.2";
   if (!writes_deck(study) || output.meshes.empty()) return;
   const formats::DeckFormat& solver = formats::find_deck_format(study::name_of(study.solver));
-  if (!output.write.version.empty() && output.write.version != solver.mesh.version)
-    throw Error(ErrorCode::usage, fmt::format("{} reads version {} of its mesh, not {}; leave --msh-version out", solver.name,
-                                              solver.mesh.version, output.write.version));
+  std::string& version = solver.mesh.format == "mfem" ? output.write.mfem_version : output.write.version;
+  if (!version.empty() && version != solver.mesh.version)
+    throw Error(ErrorCode::usage, fmt::format("{} reads version {} of its mesh, not {}; leave --{}-version out", solver.name,
+                                              solver.mesh.version, version, solver.mesh.format));
   if (!output.format.empty() && output.format != solver.mesh.format)
     throw Error(ErrorCode::usage,
                 fmt::format("{} reads {}, not {}; leave --to out", solver.name, solver.mesh.format, output.format));
   std::filesystem::path& mesh = output.meshes.front();
   if (means_folder(mesh)) {
-    std::error_code fault;
-    std::filesystem::create_directories(mesh, fault);
-    if (fault) throw Error(ErrorCode::write_failed, "the folder can't be made: " + fault.message(), {.file = mesh.string()});
+    output.makes_folder = true;
     mesh /= board_stem(board) + std::string(solver.mesh.ending);
   }
-  output.write.version = solver.mesh.version;
+  const formats::MeshFormat* format = formats::find_mesh_format(mesh, output.format);
+  if (format != nullptr && format->name != solver.mesh.format)
+    throw Error(ErrorCode::usage,
+                fmt::format("{} reads {}, not {}; name a file with the ending {}, or a folder", solver.name, solver.mesh.format,
+                            format->name, solver.mesh.ending),
+                {.file = mesh.string()});
+  version = solver.mesh.version;
   output.write.binary = output.write.binary && solver.mesh.binary;
   output.write.one_number_space = solver.mesh.one_number_space;
 }

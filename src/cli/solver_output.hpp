@@ -17,7 +17,7 @@ namespace pcbmesh::cli {
 [[nodiscard]] bool writes_deck(const study::Study& study);
 
 /// Turns the outputs of a run for a solver into what its deck wants: a folder gets a mesh file named after the board, format,
-/// version and numbering are the solver's. Folders that are named but absent are made. Does nothing without a solver.
+/// version and numbering are the solver's. A folder that is named but absent will be made. Does nothing without a solver.
 /// @throws Error usage (101) when the user asks for another format or version than the solver reads.
 void prepare_for_solver(const study::Study& study, const std::string& board, pipeline::OutputOptions& output);
 

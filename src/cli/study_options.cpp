@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "pcbmesh/base/error.hpp"
+#include "pcbmesh/study/solver_needs.hpp"
 #include "src/cli/physics_options.hpp"
 
 namespace pcbmesh::cli {
@@ -100,7 +101,10 @@ std::shared_ptr<StudyOptions> add_study_options(CLI::App& command) {
   command.add_option("--tolerance", o->tolerance, "Snapping tolerance: auto or a length (default auto)")->group(sizes);
   command.add_option("--arc-sagitta", o->arc_sagitta, "Largest distance of chord and arc (default 5um)")->group(sizes);
   command.add_option("--unit", o->unit, "Unit written to the mesh: m (default), mm, um")->group(sizes);
-  command.add_option("--split", o->split, "Write tets: three tetrahedra per prism, same nodes and tags")->group(sizes);
+  command
+      .add_option("--split", o->split,
+                  "Write tets: three tetrahedra per prism, same nodes and tags (default: none; tets for full wave in dolfinx)")
+      ->group(sizes);
   command.add_option("--order", o->order, "Order of the elements, 1 (default) or 2: arcs of the layout become curved")
       ->group(sizes);
   CLI::Option* wedge15 =
@@ -163,6 +167,8 @@ study::Study study_from(const StudyOptions& o) {
   if (o.max_prisms != 0) s.max_prisms = count("--max-prisms", o.max_prisms);
   take_fabrication_options(*o.fabrication, s.fabrication);
   take_physics_options(o, s);
+  const bool is_posed_here = !o.solver.empty() || !o.problem.empty();
+  if (is_posed_here && o.split.empty() && study::needs_tetrahedra(s)) s.split = study::ElementSplit::tetrahedra;
   study::check(s);
   return s;
 }

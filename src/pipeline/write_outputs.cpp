@@ -43,9 +43,10 @@ void require_writable(const OutputOptions& options, const std::filesystem::path&
   for (const std::filesystem::path& file : options.meshes) {
     const Spot spot{.file = file.string()};
     const std::filesystem::path absolute = std::filesystem::absolute(file);
-    if (!std::filesystem::is_directory(absolute.parent_path()))
-      throw Error(ErrorCode::write_failed, "the folder does not exist; make it first",
-                  {.file = absolute.parent_path().string()});
+    std::filesystem::path folder = absolute.parent_path();
+    while (options.makes_folder && !std::filesystem::exists(folder)) folder = folder.parent_path();
+    if (!std::filesystem::is_directory(folder))
+      throw Error(ErrorCode::write_failed, "the folder does not exist; make it first", {.file = folder.string()});
     const formats::MeshFormat* format = formats::find_mesh_format(file, options.format);
     if (std::filesystem::is_directory(file) && (format == nullptr || !format->scope.is_folder))
       throw Error(ErrorCode::write_failed, "this is a folder; name a file in it, e.g. board.msh", spot);
@@ -77,6 +78,12 @@ void write_binary_file(const std::filesystem::path& file, std::string_view bytes
 
 OutputResult write_outputs(const MeshBoardResult& result, const OutputOptions& options, const Progress& progress) {
   OutputResult out;
+  if (options.makes_folder) {
+    std::error_code fault;
+    const std::filesystem::path folder = std::filesystem::absolute(options.meshes.front()).parent_path();
+    std::filesystem::create_directories(folder, fault);
+    if (fault) throw Error(ErrorCode::write_failed, "the folder can't be made: " + fault.message(), {.file = folder.string()});
+  }
   const std::filesystem::path tags = file_beside(options.meshes.front(), ".tags.json"),
                               study = file_beside(options.meshes.front(), ".resolved.json");
   const auto num_volumes = static_cast<std::int32_t>(result.mesh.volume_tags().size());

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pcbmesh/study/solver_needs.hpp"
 #include "src/study/choices.hpp"
 #include "src/study/faults.hpp"
 
@@ -107,11 +108,15 @@ void check_solver(const Study& study, FaultList& faults) {
       faults.add("/ports", "a driven problem needs a port that is excited; `pcbmesh ports` proposes some");
     if (!study.sweep) faults.add("/sweep", "a driven problem needs frequencies; give from, to and points, or a list");
   }
-  if (study.solver == Solver::dolfinx && study.problem != Problem::electrostatic)
-    faults.add("/solver",
-               fmt::format("dolfinx has no edge elements on prisms, so a {} problem can't be posed; take palace, getdp, "
-                           "elmer or mfem, or problem electrostatic",
-                           name_of(study.problem)));
+  if (needs_tetrahedra(study) && study.split != ElementSplit::tetrahedra)
+    faults.add(
+        "/output/split",
+        fmt::format("{0} has no edge elements on prisms, so a {1} problem can't be posed on them; let prisms be cut into "
+                    "tetrahedra (--split tets), or take palace, getdp, elmer or mfem, or problem electrostatic",
+                    name_of(study.solver), name_of(study.problem)));
+  if (study.order == 2 && study.solver != Solver::palace)
+    faults.add("/output/order",
+               fmt::format("the deck of {} reads elements of first order; take order 1, or palace", name_of(study.solver)));
   if (study.solver == Solver::palace) return;
   for (std::size_t i = 0; i < study.ports.size() && study.problem == Problem::driven; ++i)
     if (study.ports[i].kind == PortKind::wave)
@@ -121,6 +126,10 @@ void check_solver(const Study& study, FaultList& faults) {
 }
 
 }  // namespace
+
+bool needs_tetrahedra(const Study& study) {
+  return study.solver == Solver::dolfinx && study.problem != Problem::electrostatic;
+}
 
 std::vector<double> Sweep::frequencies_hz() const {
   if (!list_hz.empty()) return list_hz;

@@ -9,6 +9,7 @@
 
 #include "formats/syntax/input_file.hpp"
 #include "pcbmesh/base/error.hpp"
+#include "pcbmesh/study/solver_needs.hpp"
 #include "src/study/choices.hpp"
 #include "src/study/fabrication_json.hpp"
 #include "src/study/json_fields.hpp"
@@ -202,6 +203,8 @@ Study parse_study(std::string_view json, std::string_view file_name) {
     if (const auto field = object->find("max_prisms")) study.max_prisms = field->as_integer();
   }
   read_physics(root, study);
+  const auto output = root.find("output");
+  if (needs_tetrahedra(study) && !(output && output->find("split"))) study.split = ElementSplit::tetrahedra;
   read_fabrication(root, std::filesystem::path(file_name).parent_path(), study.fabrication);
   try {
     check(study);

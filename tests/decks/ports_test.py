@@ -186,7 +186,7 @@ def wrong_ports_are_named(folder):
     expect(done.returncode == 2, f"wrong study: exit {done.returncode}\n{done.stderr}")
     for pointer in ("/ports/0/reference", "/ports/1/name", "/ports/1/at", "/sweep/points", "/sweep/to", "/mesh/frequency", "/boundaries/xmin"):
         expect(pointer in done.stderr, f"wrong study: no word of {pointer} in {done.stderr}")
-    for options, words in ((("--for", "getdp"), "needs a port"), (("--for", "dolfinx"), "no edge elements"),
+    for options, words in ((("--for", "getdp"), "needs a port"), (("--for", "dolfinx", "--split", "none"), "no edge elements"),
                            (("--for", "palace", "--msh-version", "4.1", *PORTS, "--sweep", "1GHz:2GHz:2"), "reads version 2.2")):
         done = run("mesh", BOARD, *options, "-o", folder / "wrong.msh")
         expect(done.returncode == 2 and words in done.stderr, f"{options}: exit {done.returncode} {done.stderr}")

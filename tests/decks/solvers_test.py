@@ -5,6 +5,7 @@ validation/cases/solvers."""
 import json
 import pathlib
 import re
+import shlex
 import sys
 import tempfile
 import unittest
@@ -100,27 +101,30 @@ class Solvers(unittest.TestCase):
         file.write_text(json.dumps(board))
         for arguments, words in ((["--for", "palace", "--problem", "electrostatic"], ["solid copper", "hollow"]),
                                  (["--for", "getdp", "--boundary", "all=none"], ["port", "frequencies"]),
-                                 (["--for", "getdp", "--problem", "eigenmode", "--boundary", "all=absorbing"], ["absorbing", "driven"])):
+                                 (["--for", "getdp", "--problem", "eigenmode", "--boundary", "all=absorbing"], ["absorbing", "driven"]),
+                                 (["--for", "dolfinx", "--problem", "eigenmode", "--split", "none"], ["edge elements", "--split tets", "getdp"]),
+                                 (["--for", "mfem", "--problem", "eigenmode", "--to", "mfem"], ["eigenvalue solver", "driven sweep"]),
+                                 (["--for", "getdp", "--problem", "eigenmode", "--order", "2"], ["first order"])):
             done = run("mesh", file, "--air", "0", "-o", self.out / "x.msh", *arguments)
             self.assertNotEqual(done.returncode, 0, arguments)
             for word in words:
                 self.assertIn(word, done.stderr, arguments)
             self.assertEqual([p.name for p in self.out.glob("x*")], [], arguments)
 
-    def test_palace_and_elmer_hold_everything_of_the_study(self):
+    def test_palace_elmer_mfem_and_dolfinx_hold_everything_of_the_study(self):
         board = cases.board("b", [("top", 0.035), ("core", 0.5, 4.1, 0.013), ("bottom", 0.035)], cases.rect(-2, -2, 12, 7), ["A", "GND"],
                             tracks=[{"layer": "top", "net": "A", "width": 1, "points": [[-1, 2], [11, 2]]}], planes=[{"layer": "bottom", "net": "GND"}])
         study = cases.study("driven", 2, ports=[cases.port("p1", "A", "xmin", 47), cases.port("p2", "A", "xmax", 53)], sweep=[1e9, 2e9], region=[0, 0, 10, 4],
                             boundaries={"all": "absorbing", "ymin": "pec", "ymax": {"kind": "impedance", "ohms": 321}}, air=(1, 0), conductors={"mode": "hollow", "surface": "lossy"})
         import jsonschema
         (self.out / "s.json").write_text(json.dumps(study))
-        for solver in ("palace", "elmer"):
+        for solver in ("palace", "elmer", "mfem", "dolfinx"):
             ring = {"name": "C", "net": "A", "at": {"point": [5, 2], "layer": "bottom"}, "shape": "coaxial"}
             holed = {**board, "vias": [{"at": [5, 2], "drill": 0.4, "net": "A"}]}
             (self.out / "b.json").write_text(json.dumps(holed))
             (self.out / "ring.json").write_text(json.dumps({**study, "ports": [ring]}))
             done = run("mesh", self.out / "b.json", "--study", self.out / "ring.json", "--for", solver, "-o", self.out / f"ring_{solver}")
-            if solver == "elmer":
+            if solver != "palace":
                 self.assertIn("coaxial port 'C'", done.stderr)
                 self.assertNotEqual(done.returncode, 0)
                 continue
@@ -131,7 +135,7 @@ class Solvers(unittest.TestCase):
             done = run("check", self.out / "ring_palace/b.msh", "--profile", "palace")
             self.assertEqual(done.returncode, 0, done.stdout)
         (self.out / "b.json").write_text(json.dumps(board))
-        for solver in ("palace", "elmer"):
+        for solver in ("palace", "elmer", "mfem", "dolfinx"):
             done = run("mesh", self.out / "b.json", "--study", self.out / "s.json", "--for", solver, "-o", self.out / solver)
             self.assertEqual(done.returncode, 0, done.stderr)
         deck = json.loads((self.out / "palace/b.palace.json").read_text())
@@ -150,10 +154,28 @@ class Solvers(unittest.TestCase):
         named = set(sum(([*b["Attributes"]] for key, group in boundaries.items() for b in (group if isinstance(group, list) else [group])), []))
         self.assertEqual(named, set(tags.values()), "every face group has a condition")
         sif = (self.out / "elmer/b.port1.sif").read_text()
-        for word in ("Good Conductor BC", "Absorbing BC", "Electric Robin Coefficient im", "Magnetic Boundary Load 3 im", "E re {e}"):
+        for word in ("Good Conductor BC", "Absorbing BC", "Electric Robin Coefficient im", "Magnetic Boundary Load im 3", "E re {e}"):
             self.assertIn(word, sif)
         self.assertAlmostEqual(float(re.search(r"Relative Permittivity im = Real (\S+)", sif).group(1)), 4.1 * 0.013, places=12, msg="loss is positive here")
         self.assertEqual(sif.count("Boundary Condition "), len(tags))
+        lines = [shlex.split(line) for line in (self.out / "mfem/b.problem.txt").read_text().splitlines()]
+        faces = {words[1]: words[2:] for words in lines if words[0] == "face"}
+        self.assertEqual(set(faces), set(tags))
+        self.assertEqual((faces["ymin"], faces["ymax"], faces["port|p2"]), (["pec"], ["impedance", "321"], ["port", "1"]))
+        self.assertEqual(faces["surface|A"], ["conductor", "0", "1", "1", "0", "1", "58000000"])
+        self.assertEqual([faces["xmin"][i] for i in (0, 1, 2, 3, 7, 8)], ["absorbing", "2", "0.000535", "4.1", "0.00157", "1"], "what lies behind, by height")
+        self.assertEqual([words[1] for words in lines if words[0] == "frequency_hz"], ["1000000000", "2000000000"])
+        self.assertEqual([(words[1], words[2], words[-1]) for words in lines if words[0] == "port"], [("p1", "47", "1"), ("p2", "53", "1")])
+        self.assertIn("4.1 0.013 1 0", (self.out / "mfem/b.problem.txt").read_text())
+        script = (self.out / "dolfinx/b.py").read_text()
+        problem = json.loads(script.split('r"""')[1].split('"""')[0])
+        self.assertEqual({face["name"] for face in problem["faces"]}, set(tags))
+        self.assertEqual(next(f for f in problem["faces"] if f["name"] == "ymax")["impedance_ohm"], 321)
+        self.assertEqual({(v["eps_r"], v["tan_delta"]) for v in problem["volumes"]}, {(4.1, 0.013), (1.0, 0.0)})
+        self.assertEqual([(port["impedance_ohm"], len(port["faces"])) for port in problem["ports"]], [(47, 1), (53, 1)])
+        self.assertEqual(problem["frequencies_hz"], [1e9, 2e9])
+        self.assertEqual(json.loads((self.out / "dolfinx/b.resolved.json").read_text())["output"]["split"], "tets", "no edge elements on prisms there")
+        compile(script, "b.py", "exec")
 
 
 if __name__ == "__main__":

@@ -396,5 +396,20 @@ TEST(Study, ExamplesAreRead) {
   EXPECT_EQ(paper.longest_edge, 2'000'000);
 }
 
+TEST(Study, SplitsWhereTheSolverHasNoEdgeElementsOnPrisms) {
+  const std::string waves = R"("solver": "dolfinx", "problem": "eigenmode")";
+  EXPECT_EQ(parse(waves).split, ElementSplit::tetrahedra) << "nothing is said";
+  EXPECT_EQ(parse(R"("solver": "dolfinx", "problem": "electrostatic")").split, ElementSplit::none);
+  EXPECT_EQ(parse(R"("solver": "getdp", "problem": "eigenmode")").split, ElementSplit::none);
+  try {
+    (void)parse(waves + R"(, "output": {"split": "none"})");
+    ADD_FAILURE() << "prisms are refused";
+  } catch (const Error& error) {
+    EXPECT_NE(error.text().find("--split tets"), std::string::npos) << error.text();
+  }
+  EXPECT_THROW((void)parse(R"("solver": "getdp", "problem": "eigenmode", "output": {"order": 2})"), Error);
+  EXPECT_NO_THROW((void)parse(R"("solver": "palace", "problem": "eigenmode", "output": {"order": 2})"));
+}
+
 }  // namespace
 }  // namespace pcbmesh

@@ -22,6 +22,7 @@ struct OutputOptions {
   bool check = true;  ///< judge the mesh
   int num_threads = 1;
   std::filesystem::path board{};  ///< for the certificate; empty = not certified
+  bool makes_folder = false;      ///< folder of the first mesh: made, where absent, before anything is written
 };
 
 struct OutputResult {

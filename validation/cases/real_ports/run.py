@@ -17,9 +17,9 @@ from program import ROOT  # noqa: E402
 TEXT = """# Ports on real boards, and on a coaxial line
 
 Made by `validation/cases/real_ports/run.py --write`. Each row is what a user does: `pcbmesh init BOARD --nets NETS --margin 0.5mm --for SOLVER`,
-`pcbmesh mesh BOARD --study ...` with no edit of the study in between, `pcbmesh check MESH --profile SOLVER`. Every check passes with no error; in meshes
+`pcbmesh mesh BOARD --study ...` with no edit of the study in between, `pcbmesh check MESH --profile SOLVER`. Every check passes with no error; in MSH meshes
 below a million cells Gmsh finds exactly the groups that `tags.json` promises, each with its name, number of elements and area or volume, and every port
-fills its rectangle. For dolfinx, which has no edge elements on prisms, `init` begins an electrostatic study on the tetrahedral twin.
+fills its rectangle. For dolfinx, which has no edge elements on prisms, `init` asks for the tetrahedral twin.
 `tests/decks/ports_boards_slow_test.py` repeats it, the two large regions coarsely.
 
 """

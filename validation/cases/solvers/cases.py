@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The cases: board and study of each, and what comes of them beside the closed formula. Lengths of boards in millimetres."""
+"""The cases: board and study of each, and what comes of them beside the closed formula. Lengths of boards in millimetres.
+`run` goes to solve(): the solver (GetDP if none is named), arguments, environment."""
 import cmath
 import math
 
@@ -31,25 +32,25 @@ def port(name, net, side, ohm, reference="GND", **more):
 
 # ---- cavity -------------------------------------------------------------------------------------------------------
 
-def cavity(folder, edge_mm, size=(100, 90, 70)):
+def cavity(folder, edge_mm, size=(100, 90, 70), **run):
     """A box of vacuum between two solid planes, electric walls around."""
     made = board("cavity", [("top", 1.0), ("space", size[2], 1.0, 0.0), ("bottom", 1.0)], rect(0, 0, size[0], size[1]), ["LID", "GND"],
                  planes=[{"layer": "top", "net": "LID"}, {"layer": "bottom", "net": "GND"}])
     wanted = exact.cavity_hz([MM * s for s in size])
-    solved = solve(made, study("eigenmode", edge_mm, boundaries={"all": "pec"}, modes={"number": 4, "above": 0.95 * wanted[0]}), folder)
+    solved = solve(made, study("eigenmode", edge_mm, boundaries={"all": "pec"}, modes={"number": 4, "above": 0.95 * wanted[0]}), folder, **run)
     found = solved.resonances_hz()
     return solved, [(f, w) for f, w in zip(found, wanted)][:3]
 
 
 # ---- lines --------------------------------------------------------------------------------------------------------
 
-def tem_line(folder, edge_mm, hz=3e9, tan_delta=0.0, ohm_factor=1.0, boundaries=None, eps_r=4.0):
+def tem_line(folder, edge_mm, hz=3e9, tan_delta=0.0, ohm_factor=1.0, boundaries=None, eps_r=4.0, **run):
     """Parallel plates 20 mm wide with magnetic side walls, 10 mm apart, 100 mm long: TEM, known to every digit."""
     ohm = exact.ETA0 / math.sqrt(eps_r) / 2
     made = board("line", [("top", 1.0), ("core", 10.0, eps_r, tan_delta), ("bottom", 1.0)], rect(-10, -10, 110, 30), ["A", "GND"],
                  planes=[{"layer": "top", "net": "A"}, {"layer": "bottom", "net": "GND"}])
     ports = [port("p1", "A", "xmin", ohm * ohm_factor), port("p2", "A", "xmax", ohm * ohm_factor)]
-    solved = solve(made, study("driven", edge_mm, ports=ports, sweep=[hz], region=[0, 0, 100, 20], boundaries=boundaries, mesh={"height_policy": "none", "sublayers": "none"}), folder)
+    solved = solve(made, study("driven", edge_mm, ports=ports, sweep=[hz], region=[0, 0, 100, 20], boundaries=boundaries, mesh={"height_policy": "none", "sublayers": "none"}), folder, **run)
     s = solved.touchstone()[0][1]
     k = 2 * math.pi * hz / exact.LIGHT * cmath.sqrt(eps_r * (1 - 1j * tan_delta))
     wanted = exact.line_s(ohm / cmath.sqrt(1 - 1j * tan_delta), 1j * k, 0.1, ohm * ohm_factor)
@@ -108,20 +109,20 @@ def microstrip_slice(folder, edge_mm, at_copper_mm, eps_r=3.66, width=1.1, heigh
 
 # ---- capacitances -------------------------------------------------------------------------------------------------
 
-def plates(folder, edge_mm=2.0, mode="solid"):
+def plates(folder, edge_mm=2.0, mode="solid", **run):
     """Two planes and two dielectrics: exact to rounding."""
     made = board("plates", [("top", 0.035), ("upper", 0.3, 4.4, 0.02), ("lower", 0.2, 3.0, 0.02), ("bottom", 0.035)], rect(0, 0, 10, 5), ["A", "GND"],
                  planes=[{"layer": "top", "net": "A"}, {"layer": "bottom", "net": "GND"}])
-    solved = solve(made, study("electrostatic", edge_mm, conductors={"mode": mode}), folder)
+    solved = solve(made, study("electrostatic", edge_mm, conductors={"mode": mode}), folder, **run)
     return solved, solved.capacitance()["A", "GND"], -exact.EPS0 * 50e-6 / (0.3e-3 / 4.4 + 0.2e-3 / 3.0)
 
 
-def coaxial_via(folder, edge_mm=0.3, at_copper_mm=0.05, drill=0.4, outer=2.0, height=1.0):
+def coaxial_via(folder, edge_mm=0.3, at_copper_mm=0.05, drill=0.4, outer=2.0, height=1.0, **run):
     """The barrel of a via in a round board whose rim is grounded."""
     made = board("coaxial", [("top", 0.05), ("core", height, 4.0, 0.0), ("bottom", 0.05)], {"circle": {"at": [0, 0], "diameter": outer}}, ["SIG"],
                  vias=[{"at": [0, 0], "drill": drill, "net": "SIG"}])
     solved = solve(made, study("electrostatic", edge_mm, seed="delaunay", conductors={"mode": "hollow"}, boundaries={"all": "none", "xmin": "pec", "xmax": "pec", "ymin": "pec", "ymax": "pec", "side": "pec"},
-                               mesh={"edge_at_copper": at_copper_mm, "growth": 0.5, "tolerance": "1um"}, arcs={"sagitta": "1um"}), folder)
+                               mesh={"edge_at_copper": at_copper_mm, "growth": 0.5, "tolerance": "1um"}, arcs={"sagitta": "1um"}), folder, **run)
     # The gaps of the outer copper layers are air.
     per_eps = exact.coaxial_farad_per_m(drill / 2, outer / 2, 1.0) * MM
     return solved, solved.capacitance()["SIG", "SIG"], per_eps * (4.0 * height + 0.1)
@@ -158,7 +159,7 @@ def coupled_lines(folder, edge_mm, at_copper_mm, strips=((-0.7, 0.3), (0.0, 0.3)
 
 # ---- via ----------------------------------------------------------------------------------------------------------
 
-def via_transition(folder, edge_mm=0.6, at_copper_mm=0.25, hz=(2e9, 6e9), tan_delta=0.02, ports_ohm=(50, 50)):
+def via_transition(folder, edge_mm=0.6, at_copper_mm=0.25, hz=(2e9, 6e9), tan_delta=0.02, ports_ohm=(50, 50), **run):
     """A trace above two planes, a via through their antipads, a trace below."""
     made = board("via", [("top", 0.035), ("upper", 0.25, 4.0, tan_delta), ("gnd1", 0.035), ("middle", 0.4, 4.0, tan_delta), ("gnd2", 0.035), ("lower", 0.25, 4.0, tan_delta), ("bottom", 0.035)],
                  rect(-4, -4, 4, 4), ["LINE", "GND"],
@@ -168,5 +169,5 @@ def via_transition(folder, edge_mm=0.6, at_copper_mm=0.25, hz=(2e9, 6e9), tan_de
                  planes=[{"layer": "gnd1", "net": "GND"}, {"layer": "gnd2", "net": "GND"}])
     ports = [port("p1", "LINE", "xmin", ports_ohm[0]), port("p2", "LINE", "xmax", ports_ohm[1])]
     solved = solve(made, study("driven", edge_mm, ports=ports, sweep=hz, region=[-3, -2, 3, 2], air=(1, 1), seed="delaunay", boundaries={"all": "absorbing", "xmin": "none", "xmax": "none"},
-                               conductors={"mode": "hollow", "surface": "lossy"}, mesh={"edge_at_copper": at_copper_mm, "growth": 0.6, "height_policy": "none", "sublayers": "none"}), folder)
+                               conductors={"mode": "hollow", "surface": "lossy"}, mesh={"edge_at_copper": at_copper_mm, "growth": 0.6, "height_policy": "none", "sublayers": "none"}), folder, **run)
     return solved, solved.touchstone()
