@@ -197,7 +197,7 @@ constexpr CheckCode table[] = {
     {"profile.palace.port_not_planar", FindingSeverity::error, "Profile palace", "a lumped port is not flat",
      "draw the port in one plane"},
     {"profile.palace.port_not_rectangular", FindingSeverity::error, "Profile palace", "a lumped port does not fill a rectangle",
-     "draw it as a rectangle; a coaxial port (direction R) may ignore this"},
+     "draw it as a rectangle; of ports that tags.json calls coaxial this is not asked"},
     {"profile.palace.port_conductors", FindingSeverity::error, "Profile palace",
      "a lumped port does not touch two conductors with attributes of their own",
      "extend the port to signal and ground, and give them different tags"},

@@ -55,6 +55,7 @@ void read_faces(const Field& list, Expectation& out) {
       field["kind"].fail("one of outer, conductor, sheet, port, wave_port, interface");
     face.outer = field["inner"].is_absent() ? face.kind == "outer" || face.kind == "wave_port" : !field["inner"].flag();
     read_partner(field, face.name, out);
+    face.port = field["port"].text_or_empty();
     face.num_faces = field["num_faces"].count_or_unknown();
     face.area_m2 = field["area_m2"].measure_or_unknown();
     out.faces.push_back(std::move(face));
@@ -79,6 +80,13 @@ void read_layers(const Field& top, Expectation& out) {
     out.layers.push_back(std::move(layer));
   }
   out.levels_m.assign(levels.begin(), levels.end());
+}
+
+void read_ports(const Field& top, Expectation& out) {
+  const Field ports = top["ports"];
+  if (ports.is_absent()) return;
+  for (const Field& field : ports.list())
+    if (field["kind"].text_or_empty() == "coaxial") out.coaxial_ports.push_back(field["name"].text());
 }
 
 void read_nets(const Field& top, Expectation& out) {
@@ -111,6 +119,7 @@ Expectation read_expectation(const std::string& file) {
   read_faces(top["faces"], out);
   read_nets(top, out);
   read_layers(top, out);
+  read_ports(top, out);
   return out;
 }
 

@@ -198,7 +198,7 @@ std::vector<std::string> flaws(const FieldProblem& problem) {
   }
   for (const FieldPort& port : problem.ports)
     if (!(port.port.impedance_ohm > 0) ||
-        (port.port.kind == mesh::PortKind::lumped && !(port.port.length_m > 0 && port.port.width_m > 0)))
+        (port.port.kind != mesh::PortKind::wave && !(port.port.length_m > 0 && port.port.width_m > 0)))
       out.push_back(fmt::format("port '{}' has no size or no impedance", port.port.name));
   for (const Face& face : problem.faces) {
     if (face.condition == BoundaryCondition::port && face.port < 0)

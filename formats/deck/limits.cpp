@@ -17,11 +17,15 @@ void require_volumes(const Limits& limits, const FieldProblem& problem) {
 }
 
 void require_ports(const Limits& limits, const FieldProblem& problem) {
-  if (problem.options.problem != Problem::driven || limits.wave_ports) return;
-  for (const FieldPort& port : problem.ports)
-    if (port.port.kind == mesh::PortKind::wave)
+  if (problem.options.problem != Problem::driven) return;
+  for (const FieldPort& port : problem.ports) {
+    if (port.port.kind == mesh::PortKind::coaxial && !limits.coaxial_ports)
+      refuse(limits.solver, fmt::format("coaxial port '{}' in this deck", port.port.name),
+             "a lumped port on the track beside the via; GetDP and Palace have coaxial ports");
+    if (port.port.kind == mesh::PortKind::wave && !limits.wave_ports)
       refuse(limits.solver, fmt::format("wave port '{}' in this deck", port.port.name),
              "a lumped port across the gap between trace and reference; Palace has wave ports");
+  }
 }
 
 void require_faces(const Limits& limits, const FieldProblem& problem) {

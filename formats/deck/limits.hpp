@@ -12,6 +12,7 @@ struct Limits {
   std::string_view solver;   ///< as people write it
   bool solid_copper = true;  ///< drops unknowns by volume; the others set conditions on tagged faces, and solid copper has none
   bool wave_ports = false;   ///< in driven problems
+  bool coaxial_ports = false;     ///< in driven problems
   bool lossy_resonances = false;  ///< boundaries that make the eigenvalue problem non-linear
   bool periodic_sides = false;    ///< in full wave: edges of the partner side are linked
   bool floating_skins = false;    ///< electrostatic: hollow copper without a net

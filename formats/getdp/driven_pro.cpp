@@ -76,6 +76,17 @@ std::string admittances(const deck::FieldProblem& problem, double unit_m) {
   return out;
 }
 
+/// Field of a coaxial port: V / (r ln(b/a)) towards its axis, where ln(b/a) = 2 pi H / W.
+std::string ring_constants(const mesh::Port& port, std::size_t port_number, double unit_m) {
+  const std::string x = fmt::format("({} - X[])", number(port.at_m[0] / unit_m)),
+                    y = fmt::format("({} - Y[])", number(port.at_m[1] / unit_m));
+  return fmt::format(
+      "  r_Port[Sur_Port_{0}] = Sqrt[{1}^2 + {2}^2];  // from the axis\n"
+      "  d_Port[Sur_Port_{0}] = Vector[{1}/r_Port[], {2}/r_Port[], 0];\n"
+      "  e_Wave[Sur_Port_{0}] = ($excited == {0}) ? d_Port[]*W_{0}/(2*Pi*H_{0}*r_Port[]) : Vector[0, 0, 0];  // 1 V inwards\n",
+      port_number, x, y);
+}
+
 std::string port_constants(const deck::FieldProblem& problem, double unit_m) {
   std::string out;
   for (std::size_t p = 0; p < problem.ports.size(); ++p) {
@@ -84,6 +95,10 @@ std::string port_constants(const deck::FieldProblem& problem, double unit_m) {
     out += fmt::format(
         "  DefineConstant[ R_{0} = {{{1}, Name \"R_{0}\"}} ];  // ohm\n  H_{0} = {2}; W_{0} = {3};  // mesh units\n", p + 1,
         number(port.impedance_ohm), number(port.length_m / unit_m), number(port.width_m / unit_m));
+    if (port.kind == mesh::PortKind::coaxial) {
+      out += ring_constants(port, p + 1, unit_m);
+      continue;
+    }
     out += fmt::format("  d_Port[Sur_Port_{}] = Vector[{}, {}, {}];\n", p + 1, number(port.direction[0]),
                        number(port.direction[1]), number(port.direction[2]));
     out +=
@@ -187,11 +202,13 @@ std::string driven_pro(const deck::FieldProblem& problem) {
       "      EndFor\n      SaveSolution[Sys_E];\n    } }\n}\nPostProcessing {\n  { Name Post_E; NameOfFormulation Form_E; "
       "NameOfSystem Sys_E; Quantity {\n"
       "      { Name e; Value { Local { [ {e} ]; In Vol_Field; Jacobian Jac_All; } } }\n";
-  for (std::size_t p = 0; p < problem.ports.size(); ++p)
+  for (std::size_t p = 0; p < problem.ports.size(); ++p) {
+    const bool is_ring = problem.ports[p].port.kind == mesh::PortKind::coaxial;
     out += fmt::format(
-        "      {{ Name v_{0}; Value {{ Integral {{ [ {{e}}*d_Port[]/W_{0} ]; In Sur_Port_{0}; Jacobian Jac_All; "
+        "      {{ Name v_{0}; Value {{ Integral {{ [ {{e}}*d_Port[]/{1} ]; In Sur_Port_{0}; Jacobian Jac_All; "
         "Integration Int_All; }} }} }}\n",
-        p + 1);
+        p + 1, is_ring ? std::string("(2*Pi*r_Port[])") : fmt::format("W_{}", p + 1));
+  }
   out += "    } }\n}\nPostOperation {\n  { Name Volts; NameOfPostProcessing Post_E; Operation {\n";
   for (std::size_t p = 0; p < problem.ports.size(); ++p)
     out += fmt::format(

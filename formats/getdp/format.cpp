@@ -13,7 +13,7 @@
 namespace pcbmesh::formats::getdp {
 namespace {
 
-constexpr deck::Limits limits{.solver = "GetDP", .periodic_sides = true};
+constexpr deck::Limits limits{.solver = "GetDP", .coaxial_ports = true, .periodic_sides = true};
 
 std::int32_t num_volumes(const mesh::PrismMesh& mesh) {
   return static_cast<std::int32_t>(mesh.volume_tags().size());

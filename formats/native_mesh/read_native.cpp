@@ -151,8 +151,9 @@ void read_ports(const Tables& in, PrismMeshParts& parts) {
   auto& ports = parts.ports;
   ports.resize(in.file().texts("/ports/name").size());
   in.texts("/ports/name", ports, [](auto& p, const auto& v) { p.name = v; });
-  in.texts("/ports/kind", ports,
-           [](auto& p, const auto& v) { p.kind = v == "wave" ? mesh::PortKind::wave : mesh::PortKind::lumped; });
+  in.texts("/ports/kind", ports, [](auto& p, const auto& v) {
+    p.kind = v == "wave" ? mesh::PortKind::wave : v == "coaxial" ? mesh::PortKind::coaxial : mesh::PortKind::lumped;
+  });
   in.reals("/ports/impedance_ohm", ports, [](auto& p, double v) { p.impedance_ohm = v; });
   in.integers("/ports/is_excited", ports, [](auto& p, std::int64_t v) { p.is_excited = v != 0; });
   in.give("/ports/direction", ports, in.rows<double, 3>("/ports/direction"), [](auto& p, const auto& v) { p.direction = v; });

@@ -125,7 +125,7 @@ void write_tables(Tables& out, hdf5::FileWriter& file, const PrismMesh& mesh) {
 
   const auto ports = mesh.ports();
   out.names("/ports/name", ports, name);
-  out.names("/ports/kind", ports, [](const auto& p) { return p.kind == mesh::PortKind::lumped ? "lumped" : "wave"; });
+  out.names("/ports/kind", ports, [](const auto& p) { return std::string(mesh::name_of(p.kind)); });
   out.column<double>("/ports/impedance_ohm", ports, [](const auto& p) { return p.impedance_ohm; });
   out.column<std::uint8_t>("/ports/is_excited", ports, [](const auto& p) { return p.is_excited; });
   out.rows<double, 3>("/ports/direction", ports, [](const auto& p) { return p.direction; });

@@ -20,8 +20,12 @@ using mesh::BoundaryCondition;
 constexpr double hz_per_ghz = 1e9;
 constexpr int element_order = 2;
 
-constexpr deck::Limits limits{
-    .solver = "Palace", .solid_copper = false, .wave_ports = true, .lossy_resonances = true, .floating_skins = true};
+constexpr deck::Limits limits{.solver = "Palace",
+                              .solid_copper = false,
+                              .wave_ports = true,
+                              .coaxial_ports = true,
+                              .lossy_resonances = true,
+                              .floating_skins = true};
 
 deck::FieldProblem state(const mesh::PrismMesh& mesh, const DeckOptions& options, Diagnostics& diagnostics) {
   deck::FieldProblem problem = deck::state_within(limits, mesh, options, 0, diagnostics);
@@ -34,8 +38,10 @@ deck::FieldProblem state(const mesh::PrismMesh& mesh, const DeckOptions& options
   return problem;
 }
 
-/// "+Z" along an axis, else a unit vector.
-Json direction(const std::array<double, 3>& d) {
+/// "+Z" along an axis, "-R" towards the axis of a ring, else a unit vector.
+Json direction(const mesh::Port& port) {
+  if (port.kind == mesh::PortKind::coaxial) return "-R";
+  const std::array<double, 3>& d = port.direction;
   constexpr std::array<const char*, 3> plus{"+X", "+Y", "+Z"}, minus{"-X", "-Y", "-Z"};
   for (std::size_t axis = 0; axis < 3; ++axis)
     if (std::abs(std::abs(d[axis]) - 1) < 1e-9) return d[axis] > 0 ? plus[axis] : minus[axis];
@@ -70,10 +76,10 @@ void add_ports(const deck::FieldProblem& problem, Json& boundaries) {
     Json entry{{"Index", number}};
     if (port.faces.size() == 1) {
       entry["Attributes"] = port.faces;
-      entry["Direction"] = direction(port.port.direction);
+      entry["Direction"] = direction(port.port);
     } else {
       for (const std::int32_t face : port.faces)
-        entry["Elements"].push_back({{"Attributes", {face}}, {"Direction", direction(port.port.direction)}});
+        entry["Elements"].push_back({{"Attributes", {face}}, {"Direction", direction(port.port)}});
     }
     entry["R"] = port.port.impedance_ohm;
     entry["Excitation"] = excitation;

@@ -124,10 +124,10 @@ Json ports(const mesh::PrismMesh& mesh) {
   Json out = Json::array();
   for (const mesh::Port& port : mesh.ports())
     out.push_back({{"name", port.name},
-                   {"kind", port.kind == mesh::PortKind::lumped ? "lumped" : "wave"},
+                   {"kind", mesh::name_of(port.kind)},
                    {"impedance_ohm", port.impedance_ohm},
                    {"excited", port.is_excited},
-                   {"direction", port.direction},
+                   {"direction", port.kind == mesh::PortKind::coaxial ? Json(nullptr) : Json(port.direction)},
                    {"length_m", port.length_m},
                    {"width_m", port.width_m},
                    {"positive_net", net_or_null(mesh, port.positive_net)},

@@ -34,6 +34,8 @@ std::string reason_text(const LayerChoice& layer) {
       return fmt::format("wavelength: at most {:.4g} um", layer.limits.wavelength_height_m * 1e6);
     case layering::HeightCause::across:
       return fmt::format("across: at least {}", layer.limits.least_count);
+    case layering::HeightCause::port:
+      return fmt::format("port: at least {}", layer.limits.port_count);
     case layering::HeightCause::skin_depth:
       return fmt::format("skin depth {:.4g} um: {:.4g} um at faces", layer.limits.skin_depth_m * 1e6,
                          layer.limits.face_height_m * 1e6);

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "pcbmesh/base/version.hpp"
+#include "pcbmesh/mesh/port_measures.hpp"
 #include "src/cli/diagnostics_json.hpp"
 #include "src/cli/explain_text.hpp"
 #include "src/cli/forecast_report.hpp"
@@ -54,6 +55,39 @@ double megabytes_of(const std::filesystem::path& file) {
     bytes = std::filesystem::file_size(file, ignored);
   }
   return static_cast<double>(bytes) * 1e-6;
+}
+
+/// How finely each port is meshed.
+Json ports_json(const mesh::PrismMesh& mesh) {
+  Json out = Json::array();
+  const std::vector<mesh::PortMeasure> measures = mesh::measure_ports(mesh);
+  const auto count = [](int n) { return n > 0 ? Json(n) : Json(nullptr); };
+  for (std::size_t i = 0; i < measures.size(); ++i) {
+    const mesh::PortMeasure& m = measures[i];
+    out.push_back({{"name", mesh.ports()[i].name},
+                   {"faces", m.num_faces},
+                   {"elements_along", count(m.least_along)},
+                   {"elements_across", count(m.least_across)},
+                   {"shortest_edge_m", m.shortest_edge_m},
+                   {"longest_edge_m", m.longest_edge_m},
+                   {"worst_aspect", m.worst_aspect}});
+  }
+  return out;
+}
+
+std::string ports_text(const mesh::PrismMesh& mesh) {
+  std::int64_t faces = 0;
+  double worst = 0;
+  std::size_t where = 0;
+  const std::vector<mesh::PortMeasure> measures = mesh::measure_ports(mesh);
+  for (std::size_t i = 0; i < measures.size(); ++i) {
+    faces += measures[i].num_faces;
+    if (measures[i].worst_aspect <= worst) continue;
+    worst = measures[i].worst_aspect;
+    where = i;
+  }
+  return fmt::format("{}, {} faces, longest over shortest edge of one at most {:.3g} ({})", measures.size(), grouped(faces),
+                     worst, mesh.ports()[where].name);
 }
 
 }  // namespace
@@ -117,6 +151,7 @@ std::string report_json(const MeshRun& run) {
              {"shortest_edge_m", r.quality.shortest_edge_m},
              {"longest_edge_m", r.quality.longest_edge_m}}},
            {"quality_report", quality_json(run.quality)},
+           {"ports", ports_json(r.mesh)},
            {"cpu_s", times},
            {"peak_memory_mib", peak_memory_mib()},
            {"forecast", forecast_json(r.forecast)},
@@ -152,6 +187,7 @@ std::string report_text(const MeshRun& run) {
   out +=
       line("quality", fmt::format("triangles {:.4f}, prisms {:.4f} (by volume {:.4f}, worst {:.4f})", r.quality.mean_triangle,
                                   r.quality.mean_prism, r.quality.volume_weighted_prism, r.quality.min_prism));
+  if (!r.mesh.ports().empty()) out += line("ports", ports_text(r.mesh));
   if (run.second_order)
     out += line("order 2",
                 fmt::format("{} chords of the plane lie on their arcs; {} stay straight, because {} triangles would fold",

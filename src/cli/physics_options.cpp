@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* port_form =
     "NAME,net=NET,at=PLACE[,reference=NET][,z=OHMS][,kind=lumped|wave][,shape=auto|vertical|gap|coaxial][,width=LENGTH]"
-    "[,height=LENGTH][,passive]";
+    "[,height=LENGTH][,edge=LENGTH][,layer=LAYER][,passive]";
 
 double number_in(std::string_view text, std::string_view what) {
   double value = 0;
@@ -59,7 +59,8 @@ study::Port parse_port(const std::string& text) {
     throw Error(ErrorCode::usage, fmt::format("--port '{}' begins with no name; expected {}", text, port_form));
   study::Port port;
   port.name = parts.front();
-  const std::vector<std::string> keys{"net", "at", "reference", "z", "kind", "shape", "width", "height", "passive"};
+  const std::vector<std::string> keys{"net",   "at",     "reference", "z",     "kind",   "shape",
+                                      "width", "height", "edge",      "layer", "passive"};
   for (std::size_t i = 1; i < parts.size(); ++i) {
     const std::size_t equals = parts[i].find('=');
     const std::string key = parts[i].substr(0, equals);
@@ -80,6 +81,10 @@ study::Port parse_port(const std::string& text) {
       port.width = parse_length(value);
     } else if (key == "height") {
       port.height = parse_length(value);
+    } else if (key == "layer") {
+      port.at.layer = value;
+    } else if (key == "edge") {
+      port.max_edge = parse_length(value);
     } else if (key == "passive" && value.empty()) {
       port.excited = false;
     } else {

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <utility>
 
+#include "src/compose/port_words.hpp"
+
 namespace pcbmesh::compose {
 namespace {
 
@@ -20,6 +22,13 @@ constexpr double nm_to_mm = 1e-6;
 /// How far along the tracks that leave a pin a place is looked for.
 constexpr double pin_reach_nm = 5e6;
 
+Section with_width(Section section, const study::Port& wanted) {
+  if (wanted.width) section.width_nm = static_cast<double>(*wanted.width);
+  return section;
+}
+
+}  // namespace
+
 std::string place_text(Point p) {
   return fmt::format("({:.6g}, {:.6g}) mm", static_cast<double>(p.x) * nm_to_mm, static_cast<double>(p.y) * nm_to_mm);
 }
@@ -28,17 +37,21 @@ Outcome failed(std::string fault) {
   return {std::nullopt, std::move(fault)};
 }
 
-Section with_width(Section section, const study::Port& wanted) {
-  if (wanted.width) section.width_nm = static_cast<double>(*wanted.width);
-  return section;
-}
-
 void describe(Placed& placed, const study::Port& wanted, const Terminals& nets, std::int32_t reference) {
   placed.port.name = wanted.name;
   placed.port.impedance_ohm = wanted.impedance_ohm;
   placed.port.is_excited = wanted.excited;
   placed.port.positive_net = nets.positive;
   placed.port.negative_net = reference;
+  if (wanted.max_edge) placed.port.longest_edge_m = static_cast<double>(*wanted.max_edge) * metres_per_nm;
+}
+
+namespace {
+
+/// Faces of a rectangle between two conductors, and its edges on them.
+void measure_rectangle(model::Port& port) {
+  port.area_m2 = port.length_m * port.width_m;
+  port.positive_edge_m = port.negative_edge_m = port.width_m;
 }
 
 }  // namespace
@@ -83,6 +96,7 @@ Outcome PortPlacer::at_pin(const study::Port& wanted, const Terminals& nets) con
   if (!footprint_.contains(pin->at))
     return failed(fmt::format("pin {} at {} lies outside the domain; grow the region's margin, or take another pin",
                               wanted.at.pin, place_text(pin->at)));
+  if (wanted.shape == study::PortShape::coaxial) return coaxial(wanted, nets, pin->at);
   if (wanted.shape == study::PortShape::gap) return across_gap(wanted, nets, pin->copper_layer, pin->at);
   // In the middle of the pad; where a hole is in the way, on the track that leaves it.
   std::vector<Section> sections;
@@ -112,6 +126,7 @@ Outcome PortPlacer::at_point(const study::Port& wanted, const Terminals& nets) c
   if (!footprint_.contains(p))
     return failed(fmt::format("{} lies outside the domain, {} to {}; move the port or grow the region", place_text(p),
                               place_text(footprint_.box.min), place_text(footprint_.box.max)));
+  if (wanted.shape == study::PortShape::coaxial) return coaxial(wanted, nets, p);
   std::optional<std::int32_t> layer;
   if (!wanted.at.layer.empty()) {
     layer = find_layer(wanted.at.layer);
@@ -210,12 +225,13 @@ Outcome PortPlacer::vertical(const study::Port& wanted, const Terminals& nets, s
                               board_.copper_name(found.layer), place_text(middle)));
   const Point a = section.at(-0.5), b = section.at(0.5);
   placed.port.line = {a, b};
-  placed.footprint = triangle_beside(a, b, section);
+  placed.footprint = {triangle_beside(a, b, section)};
   placed.port.direction = {0, 0, is_above ? 1.0 : -1.0};
   placed.port.length_m = static_cast<double>(top - bottom) * metres_per_nm;
   placed.port.width_m = std::hypot(static_cast<double>(b.x - a.x), static_cast<double>(b.y - a.y)) * metres_per_nm;
   placed.port.at_m = {section.middle_nm[0] * metres_per_nm, section.middle_nm[1] * metres_per_nm,
                       static_cast<double>(bottom + top) * 0.5 * metres_per_nm};
+  measure_rectangle(placed.port);
   return {placed, ""};
 }
 
@@ -281,9 +297,25 @@ Outcome PortPlacer::wave(const study::Port& wanted, const Terminals& nets, std::
   const auto moved = [&](Point p) {
     return axis == 0 ? Point{p.x + std::llround(inwards), p.y} : Point{p.x, p.y + std::llround(inwards)};
   };
-  placed.footprint = {a, b, moved(b), moved(a)};
-  geometry::make_counter_clockwise(placed.footprint);
+  // An outline may run along the side itself.
+  const auto inside = [&](Point p) {
+    const Nm step = inwards > 0 ? 10 : -10;
+    return axis == 0 ? Point{p.x + step, p.y} : Point{p.x, p.y + step};
+  };
+  Ring rectangle{a, b, moved(b), moved(a)};
+  geometry::make_counter_clockwise(rectangle);
+  placed.footprint = {std::move(rectangle)};
   const Nm bottom = search_.z_nm(placed.first_slab), top = search_.z_nm(placed.last_slab + 1);
+  for (std::int32_t i = 0; i < search_.num_layers(); ++i) {
+    if (search_.z_nm(search_.gap_face(i)) < bottom || search_.z_nm(search_.gap_face(i)) > top) continue;
+    for (const Point end : {a, b})
+      for (const std::int32_t net : copper_.nets_at(i, inside(end)))
+        if (net != found.below.net && net != found.above.net)
+          return failed(
+              fmt::format("its edge at {} cuts the copper of {} on {}; choose its width so that it goes round each "
+                          "conductor or leaves it out",
+                          place_text(end), net_text(net), board_.copper_name(i)));
+  }
   placed.port.direction = {0, 0, is_above ? 1.0 : -1.0};
   placed.port.length_m = static_cast<double>(top - bottom) * metres_per_nm;
   placed.port.width_m = section.width_nm * metres_per_nm;
@@ -302,13 +334,14 @@ Outcome PortPlacer::across_gap(const study::Port& wanted, const Terminals& nets,
   placed.port.faces = model::PortFaces::cap;
   placed.port.face = search_.gap_face(layer);
   placed.first_slab = placed.last_slab = std::min(placed.port.face, search_.num_slabs() - 1);
-  placed.footprint = gap.rectangle;
+  placed.footprint = {gap.rectangle};
   placed.port.direction = gap.direction;
   placed.port.length_m = gap.length_nm * metres_per_nm;
   placed.port.width_m = gap.width_nm * metres_per_nm;
   placed.port.line = {gap.rectangle[0], gap.rectangle[1]};
   placed.port.at_m = {gap.middle_nm[0] * metres_per_nm, gap.middle_nm[1] * metres_per_nm,
                       static_cast<double>(search_.z_nm(placed.port.face)) * metres_per_nm};
+  measure_rectangle(placed.port);
   return {placed, ""};
 }
 
@@ -318,8 +351,8 @@ bool overlap(const Placed& a, const Placed& b) {
   if (a.last_slab < b.first_slab || b.last_slab < a.first_slab) return false;
   geometry::Box first, second;
   const bool by_line = a.port.faces == model::PortFaces::wall;
-  for (const Point p : by_line ? Ring(a.port.line.begin(), a.port.line.end()) : a.footprint) first.add(p);
-  for (const Point p : by_line ? Ring(b.port.line.begin(), b.port.line.end()) : b.footprint) second.add(p);
+  for (const Point p : by_line ? Ring(a.port.line.begin(), a.port.line.end()) : a.footprint.front()) first.add(p);
+  for (const Point p : by_line ? Ring(b.port.line.begin(), b.port.line.end()) : b.footprint.front()) second.add(p);
   if (!by_line) return first.touches(second);
   // Lines of two ports touch where they cross or lie in one another.
   const auto side = [](const std::array<Point, 2>& line, Point p) { return geometry::orientation(line[0], line[1], p); };

@@ -20,7 +20,7 @@ namespace pcbmesh::compose {
 /// A port that is right, and where it stands.
 struct Placed {
   model::Port port;
-  geometry::Ring footprint;
+  std::vector<geometry::Ring> footprint;  ///< outer ring first, counter-clockwise; a clockwise one is a hole
   std::int32_t first_slab = 0, last_slab = 0;
 };
 
@@ -38,7 +38,12 @@ class PortPlacer {
  public:
   PortPlacer(const board::Board& board, const study::Study& study, const std::vector<ResolvedRule>& rules,
              const Footprint& footprint, const Stack& stack)
-      : board_(board), footprint_(footprint), copper_(board, study), search_(board, study, rules, stack, copper_) {}
+
+      : board_(board),
+        arcs_(study.arcs),
+        footprint_(footprint),
+        copper_(board, study),
+        search_(board, study, rules, stack, copper_) {}
 
   /// REQUIRES both nets to be on the board.
   [[nodiscard]] Outcome place(const study::Port& wanted) const;
@@ -56,11 +61,14 @@ class PortPlacer {
   /// Flat, across the gap to the reference on the same layer.
   [[nodiscard]] Outcome across_gap(const study::Port& wanted, const Terminals& nets, std::int32_t layer,
                                    geometry::Point p) const;
+  /// A flat ring round a plated hole, from the plane to the hole's copper.
+  [[nodiscard]] Outcome coaxial(const study::Port& wanted, const Terminals& nets, geometry::Point p) const;
   [[nodiscard]] std::optional<std::int32_t> find_layer(const std::string& name) const;
   [[nodiscard]] std::string net_text(std::int32_t net) const;
   [[nodiscard]] geometry::Ring triangle_beside(geometry::Point a, geometry::Point b, const Section& section) const;
 
   const board::Board& board_;
+  geometry::ArcOptions arcs_;
   const Footprint& footprint_;
   CopperFinder copper_;
   PortSearch search_;

@@ -30,12 +30,6 @@ void add_ports(const board::Board& board, const study::Study& study, const std::
     const study::Port& wanted = study.ports[i];
     if (!board.find_net(wanted.net) || (!wanted.reference.empty() && !board.find_net(wanted.reference))) continue;
     if (is_at_fault(study, i)) continue;  // told already
-    if (wanted.shape == study::PortShape::coaxial) {
-      faults.push_back(
-          {fmt::format("/ports/{}/shape", i),
-           fmt::format("port '{}': coaxial ports are not built yet; put the port on the track beside the via", wanted.name)});
-      continue;
-    }
     Outcome outcome = placer.place(wanted);
     if (!outcome.placed) {
       faults.push_back({fmt::format("/ports/{}", i), fmt::format("port '{}': {}", wanted.name, outcome.fault)});
@@ -57,7 +51,7 @@ void add_ports(const board::Board& board, const study::Study& study, const std::
                             .kind = model::BodyKind::port,
                             .first_slab = one.first_slab,
                             .last_slab = one.last_slab});
-    parts.shapes.push_back({.body = one.port.body, .rings = {std::move(one.footprint)}, .simple = true});
+    parts.shapes.push_back({.body = one.port.body, .rings = std::move(one.footprint), .simple = true});
     parts.ports.push_back(std::move(one.port));
   }
 }

@@ -51,17 +51,18 @@ class PortCheck {
     if (found.num_inner > 0 && found.num_outer > 0)
       return "lies on the hull in part; move it inside, or put it on the side itself";
     if (port.is_wave) return found.num_inner > 0 ? "must be on the hull; give a side of the region" : "";
-    const double wanted = port.length_m * port.width_m, area = parts_.face_tags[index(found.tag)].area_m2;
+    const double wanted = port.area_m2, area = parts_.face_tags[index(found.tag)].area_m2;
     if (std::abs(area - wanted) > relative_tolerance * wanted)
       return fmt::format(
-          "covers {:.4g} mm2 where its rectangle has {:.4g} mm2: something stands in it, or it lies over an edge; "
+          "covers {:.4g} mm2 where its {} has {:.4g} mm2: something stands in it, or it lies over an edge; "
           "move it or make it narrower",
-          area * 1e6, wanted * 1e6);
-    for (const auto& [length, net, end] : {std::tuple{found.positive_m, port.positive_net, "positive"},
-                                           std::tuple{found.negative_m, port.negative_net, "negative"}})
-      if (std::abs(length - port.width_m) > relative_tolerance * port.width_m)
-        return fmt::format("touches net {} along {:.4g} um of its {:.4g} um wide {} edge; move it or make it narrower",
-                           model_.net_name(net), length * 1e6, port.width_m * 1e6, end);
+          area * 1e6, port.is_coaxial ? "ring" : "rectangle", wanted * 1e6);
+    for (const auto& [length, edge, net, end] :
+         {std::tuple{found.positive_m, port.positive_edge_m, port.positive_net, "positive"},
+          std::tuple{found.negative_m, port.negative_edge_m, port.negative_net, "negative"}})
+      if (std::abs(length - edge) > relative_tolerance * edge)
+        return fmt::format("touches net {} along {:.4g} um of its {:.4g} um long {} edge; move it or make it narrower",
+                           model_.net_name(net), length * 1e6, edge * 1e6, end);
     return "";
   }
 
@@ -140,11 +141,11 @@ class PortCheck {
 };
 
 mesh::Port port_of(const model::Port& port) {
-  return {port.name,          port.is_wave ? mesh::PortKind::wave : mesh::PortKind::lumped,
-          port.impedance_ohm, port.is_excited,
-          port.direction,     port.length_m,
-          port.width_m,       port.positive_net,
-          port.negative_net,  port.at_m};
+  const mesh::PortKind kind = port.is_wave      ? mesh::PortKind::wave
+                              : port.is_coaxial ? mesh::PortKind::coaxial
+                                                : mesh::PortKind::lumped;
+  return {port.name,     kind,         port.impedance_ohm, port.is_excited,   port.direction,
+          port.length_m, port.width_m, port.positive_net,  port.negative_net, port.at_m};
 }
 
 }  // namespace

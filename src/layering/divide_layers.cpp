@@ -39,6 +39,7 @@ void require_count(double count, std::int64_t already, const model::Slab& slab) 
 std::pair<int, HeightCause> equal_count(double height_m, int policy_count, const SlabLimits& limits, const model::Slab& slab) {
   std::pair<int, HeightCause> out{policy_count, policy_count > 1 ? HeightCause::policy : HeightCause::slab};
   if (limits.least_count > out.first) out = {limits.least_count, HeightCause::across};
+  if (limits.port_count > out.first) out = {limits.port_count, HeightCause::port};
   const double by_wavelength = std::ceil(height_m / limits.wavelength_height_m - tolerance);
   require_count(by_wavelength, 0, slab);
   if (by_wavelength > out.first) out = {static_cast<int>(by_wavelength), HeightCause::wavelength};
@@ -100,6 +101,8 @@ std::string_view name_of(HeightCause cause) {
       return "wavelength";
     case HeightCause::across:
       return "across";
+    case HeightCause::port:
+      return "port";
     case HeightCause::skin_depth:
       return "skin_depth";
     case HeightCause::growth:

@@ -14,6 +14,7 @@ namespace {
 constexpr double speed_of_light_m_per_s = 299'792'458.0;
 constexpr double vacuum_permeability = 4e-7 * std::numbers::pi;
 constexpr double default_growth = 2;
+constexpr int least_elements_of_port = 2;  // from one terminal to the other
 
 double skin_depth_m(const board::Material& metal, double frequency_hz, const model::Slab& slab) {
   if (metal.sigma_s_per_m > 0)
@@ -49,6 +50,18 @@ std::vector<SlabLimits> slab_limits(const model::Model& model, const study::Stud
       limits[s].wavelength_height_m =
           speed_of_light_m_per_s / *frequency_hz / slowness(model, slab) / bounds.elements_per_wavelength;
     if (slab.kind == model::SlabKind::dielectric) limits[s].least_count = bounds.elements_per_dielectric.value_or(1);
+  }
+  for (const model::Port& port : model.ports()) {
+    if (port.faces != model::PortFaces::wall) continue;
+    const model::Body& body = model.bodies()[static_cast<std::size_t>(port.body)];
+    const std::int32_t num_slabs = body.last_slab - body.first_slab + 1;
+    for (std::int32_t s = body.first_slab; s <= body.last_slab; ++s) {
+      const model::Slab& slab = model.slabs()[static_cast<std::size_t>(s)];
+      const double height_m = static_cast<double>(slab.z_top_nm - slab.z_bottom_nm) * metres_per_nm;
+      int& count = limits[static_cast<std::size_t>(s)].port_count;
+      if (!port.is_wave) count = std::max(count, (least_elements_of_port + num_slabs - 1) / num_slabs);
+      if (port.longest_edge_m > 0) count = std::max(count, static_cast<int>(std::ceil(height_m / port.longest_edge_m - 1e-9)));
+    }
   }
   if (!bounds.skin_depth_layers || !frequency_hz) return limits;
   // Hollow copper and sheets hold no field, so they ask for nothing; barrels are upright walls, which heights do not resolve.

@@ -38,6 +38,11 @@ std::string_view name_of(FaceTagKind kind) {
   return names[static_cast<std::size_t>(kind)];
 }
 
+std::string_view name_of(PortKind kind) {
+  constexpr std::string_view names[] = {"lumped", "wave", "coaxial"};
+  return names[static_cast<std::size_t>(kind)];
+}
+
 std::string_view name_of(BoundaryCondition condition) {
   constexpr std::string_view names[] = {"none", "absorbing", "pec", "pmc", "impedance", "conductor", "port", "periodic"};
   return names[static_cast<std::size_t>(condition)];

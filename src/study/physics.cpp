@@ -42,6 +42,11 @@ void check_port(const Port& port, std::size_t number, FaultList& faults) {
     faults.add(field + "/impedance", fmt::format("{} ohms of {} are out of range; expected above 0", port.impedance_ohm, who));
   if (port.width) faults.require_length(field + "/width", *port.width, nm_per_um, max_coordinate_nm);
   if (port.height) faults.require_length(field + "/height", *port.height, nm_per_um, max_coordinate_nm);
+  if (port.max_edge) faults.require_length(field + "/max_edge", *port.max_edge, nm_per_um, max_coordinate_nm);
+  if (port.shape == PortShape::coaxial && port.at.side)
+    faults.add(field + "/at", fmt::format("coaxial {} needs a via: give a pin, or a point on a plated hole", who));
+  if (port.shape == PortShape::coaxial && port.width)
+    faults.add(field + "/width", fmt::format("the width of coaxial {} follows from its antipad; leave it out", who));
   if (port.height && port.kind != PortKind::wave)
     faults.add(field + "/height", fmt::format("the height of lumped {} follows from its conductors; leave it out", who));
 }

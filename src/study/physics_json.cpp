@@ -23,7 +23,8 @@ PortPlace read_place(const JsonValue& object) {
 }
 
 Port read_port(const JsonValue& object) {
-  object.allow_only({"note", "name", "kind", "net", "reference", "at", "shape", "impedance", "excited", "width", "height"});
+  object.allow_only(
+      {"note", "name", "kind", "net", "reference", "at", "shape", "impedance", "excited", "width", "height", "max_edge"});
   Port port;
   if (const auto field = object.find("note")) (void)field->as_string();
   port.name = object.at("name").as_string();
@@ -36,6 +37,7 @@ Port read_port(const JsonValue& object) {
   if (const auto field = object.find("excited")) port.excited = field->as_boolean();
   read_optional_length(object, "width", port.width);
   read_optional_length(object, "height", port.height);
+  read_optional_length(object, "max_edge", port.max_edge);
   return port;
 }
 
@@ -132,7 +134,9 @@ Json place_json(const PortPlace& place) {
     if (!place.layer.empty()) out["layer"] = place.layer;
     return out;
   }
-  return {{"pin", place.pin}};
+  Json out{{"pin", place.pin}};
+  if (!place.layer.empty()) out["layer"] = place.layer;
+  return out;
 }
 
 Json port_json(const Port& port, const std::string& note) {
@@ -146,6 +150,7 @@ Json port_json(const Port& port, const std::string& note) {
            {"excited", port.excited},
            {"width", optional_length(port.width)}};
   if (port.kind == PortKind::wave) out["height"] = optional_length(port.height);
+  out["max_edge"] = optional_length(port.max_edge);
   if (!note.empty()) out["note"] = note;
   return out;
 }

@@ -225,9 +225,15 @@ std::array<Boundary, num_hull_sides> resolved_boundaries(const Study& study) {
       return port.kind == PortKind::lumped && port.at.side && static_cast<std::size_t>(*port.at.side) == side;
     });
   };
+  // Where there is no air, the ring of a coaxial port may lie right at the end of the domain, which would load it as well.
+  const bool has_ring = std::ranges::any_of(study.ports, [](const Port& port) { return port.shape == PortShape::coaxial; });
+  const auto is_behind_ring = [&](std::size_t side) {
+    return has_ring && ((side == static_cast<std::size_t>(HullSide::zmin) && study.air_below == 0) ||
+                        (side == static_cast<std::size_t>(HullSide::zmax) && study.air_above == 0));
+  };
   for (std::size_t i = 0; i < num_hull_sides; ++i)
     if (boundaries[i].kind == BoundaryKind::automatic)
-      boundaries[i].kind = has_lumped_port(i) ? BoundaryKind::none : BoundaryKind::absorbing;
+      boundaries[i].kind = has_lumped_port(i) || is_behind_ring(i) ? BoundaryKind::none : BoundaryKind::absorbing;
   return boundaries;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <vector>
 
 #include "src/triangulate/cdt.hpp"
 #include "src/triangulate/copper_distance.hpp"
@@ -27,6 +28,13 @@ class MeshBounds {
 
   /// Wanted edge length: at_copper + growth * distance, at most the longest edge; `copper` must outlive this.
   void set_grading(double edge_at_copper, double growth, const SegmentDistance& copper);
+
+  /// Wanted edge length inside a footprint, whose edges are constrained.
+  struct Spot {
+    std::vector<std::vector<std::array<double, 2>>> rings;  ///< even-odd
+    double longest_edge = 0;
+  };
+  void add_spot(Spot spot);
 
   [[nodiscard]] double sine2_bound() const { return sine2_bound_; }
   [[nodiscard]] double longest_edge() const { return longest_; }
@@ -57,6 +65,7 @@ class MeshBounds {
 
   [[nodiscard]] Verdict judge(Cdt::Face_handle face, const Shape& shape) const {
     if (shape.longest2 > longest2_) return Verdict::too_long;
+    if (!spots_.empty() && is_too_long_in_spot(face, shape.longest2)) return Verdict::too_long;
     if (copper_ != nullptr && shape.longest2 > at_copper2_ && is_too_long_here(face, shape.longest2)) return Verdict::too_long;
     if (!(shape.sine2 < sine2_bound_) || shape.shortest2 < floor2_) return Verdict::good;
     return is_forced(face, shape.shortest) ? Verdict::good : Verdict::bad_shape;
@@ -75,11 +84,17 @@ class MeshBounds {
 
  private:
   [[nodiscard]] bool is_too_long_here(Cdt::Face_handle face, double longest2) const;
+  [[nodiscard]] bool is_too_long_in_spot(Cdt::Face_handle face, double longest2) const;
   [[nodiscard]] double wanted(Cdt::Vertex_handle vertex) const;
 
   double longest_ = 0, longest2_ = 0, sine2_bound_ = 0, floor_ = 0, floor2_ = 0;
   double at_copper_ = 0, at_copper2_ = 0, growth_ = 0;
   const SegmentDistance* copper_ = nullptr;
+  struct BoxedSpot {
+    Spot spot;
+    std::array<double, 2> min, max;
+  };
+  std::vector<BoxedSpot> spots_;
 };
 
 }  // namespace pcbmesh::triangulate

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <ctime>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -88,6 +89,26 @@ std::vector<SegmentDistance::Segment> copper_segments(const mesh::PlanarGraph& g
   return segments;
 }
 
+/// Ports want two elements at least across and along, and what the study says.
+void bound_ports(const model::Model& model, double unit_nm, MeshBounds& bounds) {
+  for (const model::Port& port : model.ports()) {
+    double longest_m = port.longest_edge_m > 0 ? port.longest_edge_m : std::numeric_limits<double>::infinity();
+    if (!port.is_wave) longest_m = std::min(longest_m, 0.5 * port.width_m);
+    if (port.faces == model::PortFaces::cap) longest_m = std::min(longest_m, 0.5 * port.length_m);
+    if (!std::isfinite(longest_m)) continue;
+    MeshBounds::Spot spot{{}, longest_m / metres_per_nm / unit_nm};
+    for (const model::BodyShape& shape : model.shapes()) {
+      if (shape.body != port.body) continue;
+      for (const geometry::Ring& ring : shape.rings) {
+        auto& corners = spot.rings.emplace_back();
+        for (const geometry::Point p : ring)
+          corners.push_back({static_cast<double>(p.x) / unit_nm, static_cast<double>(p.y) / unit_nm});
+      }
+    }
+    bounds.add_spot(std::move(spot));
+  }
+}
+
 /// Area, in squared units of the triangulation, of the faces inside the domain.
 double mark_domain(Cdt& cdt, const Regions& regions) {
   double area = 0;
@@ -139,6 +160,7 @@ TriangulateResult triangulate(const mesh::PlanarGraph& graph, const model::Model
   if (options.grading && !copper.is_empty()) {
     bounds.set_grading(options.grading->edge_at_copper_nm / unit_nm, options.grading->growth, copper);
   }
+  bound_ports(model, unit_nm, bounds);
   // For the progress bar only. Where the longest edge drives, triangles have about 0.2 L^2 and share half a vertex each.
   const double longest = options.longest_edge_nm / unit_nm;
   const double expected = 3 * static_cast<double>(graph.vertices().size()) + 2.6 * area / (longest * longest);

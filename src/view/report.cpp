@@ -89,10 +89,12 @@ Json ports_json(const mesh::PrismMesh& mesh) {
       if (mesh.face_tags()[t].port == static_cast<std::int32_t>(i)) tags.push_back(t);
     const bool is_lumped = p.kind == mesh::PortKind::lumped;
     ports.push_back({{"name", p.name},
-                     {"kind", is_lumped ? "lumped" : "wave"},
+                     {"kind", mesh::name_of(p.kind)},
                      {"impedance_ohm", p.impedance_ohm},
                      {"excited", p.is_excited},
-                     {"direction", is_lumped ? Json(direction_text(p.direction)) : Json()},
+                     {"direction", is_lumped                           ? Json(direction_text(p.direction))
+                                   : p.kind == mesh::PortKind::coaxial ? Json("the radius, inwards")
+                                                                       : Json()},
                      {"length_m", is_lumped ? Json(p.length_m) : Json()},
                      {"width_m", is_lumped ? Json(p.width_m) : Json()},
                      {"positive_net", net(p.positive_net)},

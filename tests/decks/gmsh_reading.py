@@ -13,14 +13,14 @@ def expect(condition, text):
         faults.append(text)
 
 
-def read_group(dimension, tag, index, points):
+def read_group(dimension, tag, index, points, cell=6):
     """Number of elements and total size of one physical group; orientation is checked on the way."""
     count, size = 0, 0.0
     for entity in gmsh.model.getEntitiesForPhysicalGroup(dimension, tag):
         kinds, _, nodes = gmsh.model.mesh.getElements(dimension, entity)
         for kind, corners in zip(kinds, nodes):
-            expect(kind in ((6,) if dimension == 3 else (2, 3)), f"element type {kind} in group {dimension} {tag}")
-            corners = index[numpy.asarray(corners, dtype=numpy.int64)].reshape(-1, {2: 3, 3: 4, 6: 6}[kind])
+            expect(kind in ((cell,) if dimension == 3 else (2, 3)), f"element type {kind} in group {dimension} {tag}")
+            corners = index[numpy.asarray(corners, dtype=numpy.int64)].reshape(-1, {2: 3, 3: 4, 4: 4, 6: 6}[kind])
             sizes = signed_volumes(corners, points) if dimension == 3 else areas(corners, points)
             expect((sizes > 0).all(), f"group {dimension} {tag} has elements turned inside out")
             count, size = count + len(corners), size + float(sizes.sum())
@@ -40,7 +40,7 @@ def outward_flux(index, points, outer):
     return total
 
 
-def check_msh(mesh, tags):
+def check_msh(mesh, tags, cell=6):
     gmsh.clear()
     gmsh.open(str(mesh))
     numbers, coordinates, _ = gmsh.model.mesh.getNodes()
@@ -58,11 +58,11 @@ def check_msh(mesh, tags):
         for group in groups:
             name = gmsh.model.getPhysicalName(dimension, group["id"])
             expect(name == group["name"], f"{mesh.name}: group {dimension} {group['id']} is named '{name}', not '{group['name']}'")
-            count, size = read_group(dimension, group["id"], index, points)
+            count, size = read_group(dimension, group["id"], index, points, cell)
             size *= unit**dimension
             expect(count == group[count_key], f"{mesh.name}: {group['name']}: {count} elements, tags.json says {group[count_key]}")
             expect(close(size, group[size_key]), f"{mesh.name}: {group['name']}: size {size}, tags.json says {group[size_key]}")
-    for kind, corners in ((2, 3), (3, 4), (6, 6)):
+    for kind, corners in ((2, 3), (3, 4), (4, 4), (6, 6)):
         elements = numpy.sort(numpy.asarray(gmsh.model.mesh.getElementsByType(kind)[1]).reshape(-1, corners), axis=1)
         expect(len(numpy.unique(elements, axis=0)) == len(elements), f"{mesh.name}: elements of type {kind} twice")
     for dimension in (0, 1):

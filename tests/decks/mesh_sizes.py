@@ -8,9 +8,9 @@ def close(a, b, tolerance=1e-9):
 
 
 def signed_volumes(corners, points):
-    """Volumes of wedges with straight vertical edges: area of the bottom triangle times height, signed."""
+    """Volumes of tetrahedra, and of wedges with straight vertical edges: area of the bottom triangle times height, signed."""
     a, b, c, d = (points[corners[:, i]] for i in (0, 1, 2, 3))
-    return numpy.einsum("ij,ij->i", numpy.cross(b - a, c - a), d - a) / 2
+    return numpy.einsum("ij,ij->i", numpy.cross(b - a, c - a), d - a) / (6 if corners.shape[1] == 4 else 2)
 
 
 def areas(corners, points):

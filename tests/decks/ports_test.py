@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Ports, sheets and outer conditions, from the command line to what Gmsh finds in the mesh."""
 import json
+import math
 import pathlib
 import sys
 import tempfile
@@ -126,6 +127,31 @@ def palace_gets_no_chords(folder):
     expect(file.read_bytes().startswith(b"$MeshFormat\n2.2"), "Palace reads MSH 2.2")
 
 
+def a_ring_in_an_antipad(folder):
+    """The example of a coaxial connector: radii, faces, default of the side behind the ring, and each deck's word about it."""
+    board, study = ROOT / "examples/launch.json", ROOT / "examples/launch.study.json"
+    file = folder / "launch.msh"
+    done = run("mesh", board, "--study", study, "-o", file)
+    if done.returncode != 0:
+        raise SystemExit(f"{done.args}\nexit {done.returncode}\n{done.stdout}{done.stderr}")
+    tags = json.loads(file.with_suffix(".tags.json").read_text())
+    check_msh(file, tags)
+    port = next(p for p in tags["ports"] if p["name"] == "coax")
+    ratio = math.exp(2 * math.pi * port["length_m"] / port["width_m"])
+    expect(port["kind"] == "coaxial" and port["direction"] is None and close(port["length_m"], 0.6e-3, 0.01) and close(ratio, 1.7 / 0.5, 0.02), f"ring: {port} ratio {ratio}")
+    points = points_of(tags, "port|coax") - numpy.asarray(port["at_m"])
+    radii = numpy.hypot(points[:, 0], points[:, 1])
+    expect(numpy.abs(points[:, 2]).max() < 1e-12 and radii.min() > 0.24e-3 and radii.max() < 0.8501e-3, f"ring: from {radii.min()} to {radii.max()}")
+    expect(face(tags, "port|coax")["inner"] and face(tags, "zmin")["condition"] == "none" and face(tags, "zmax")["condition"] == "absorbing", "sides about the ring")
+    report = json.loads(file.with_suffix(".report.json").read_text())
+    expect(all(p["elements_along"] >= 2 for p in report["ports"]) and "ports " in done.stdout, f"ports of the report: {report['ports']}")
+    done = run("mesh", board, "--study", study, "--for", "palace", "-o", folder / "palace/")
+    deck = json.loads((folder / "palace/launch.palace.json").read_text())
+    expect({p.get("Direction") for p in deck["Boundaries"]["LumpedPort"]} == {"-R", "+Z"}, f"Palace: {deck['Boundaries']['LumpedPort']}")
+    done = run("mesh", board, "--study", study, "--for", "elmer", "-o", folder / "elmer/")
+    expect(done.returncode != 0 and "coaxial port 'coax'" in done.stderr and not list((folder / "elmer").glob("*.msh")), f"Elmer: {done.stderr}")
+
+
 WRONG = {
     "schema_version": 1,
     "region": {"kind": "box", "box": {"min": [5, 1], "max": [15, 9]}, "nets": ["LINE"]},
@@ -190,7 +216,7 @@ def init_needs_no_edit(folder):
 gmsh.initialize()
 gmsh.option.setNumber("General.Terminal", 0)
 with tempfile.TemporaryDirectory() as scratch:
-    for step in (modes_agree, one_mode_alone, sheets_on_the_hull, ports_on_sides, palace_gets_no_chords, wrong_ports_are_named, init_needs_no_edit):
+    for step in (modes_agree, one_mode_alone, sheets_on_the_hull, ports_on_sides, palace_gets_no_chords, a_ring_in_an_antipad, wrong_ports_are_named, init_needs_no_edit):
         step(pathlib.Path(scratch))
 gmsh.finalize()
 for fault in faults:

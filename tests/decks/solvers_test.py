@@ -74,6 +74,19 @@ class Solvers(unittest.TestCase):
         twin = solve.solve_twin(solved, "Capacitance").capacitance()["SIG", "SIG"]
         self.assertLess(abs(twin / found - 1), 0.005, "prisms and their tetrahedral twin agree")
 
+    def test_coaxial_ports_feed_a_coaxial_line(self):
+        """Two rings at the ends of a barrel in a round shield: amplitude, phase and sign of what arrives, and of what comes back."""
+        errors = []
+        for edge in (0.4, 0.2):
+            _, s, wanted = cases.coaxial_line(self.out, edge)
+            errors.append(abs(s[1][0] - wanted[1]) + abs(s[0][0] - wanted[0]))
+        self.assertLess(errors[0], 0.05, errors)
+        self.assertLess(errors[1], 0.6 * errors[0], errors)
+        _, s, wanted = cases.coaxial_line(self.out, 0.2, ohm_factor=2)
+        self.assertGreater(abs(s[0][0]), 0.5)
+        self.assertLess(abs(s[0][0] - wanted[0]), 0.01)
+        self.assertLess(abs(s[1][0] - wanted[1]), 0.01)
+
     def test_via_transition_is_passive_and_reciprocal(self):
         _, sweep = cases.via_transition(self.out, hz=(4e9,))
         s = sweep[0][1]
@@ -103,14 +116,30 @@ class Solvers(unittest.TestCase):
                             tracks=[{"layer": "top", "net": "A", "width": 1, "points": [[-1, 2], [11, 2]]}], planes=[{"layer": "bottom", "net": "GND"}])
         study = cases.study("driven", 2, ports=[cases.port("p1", "A", "xmin", 47), cases.port("p2", "A", "xmax", 53)], sweep=[1e9, 2e9], region=[0, 0, 10, 4],
                             boundaries={"all": "absorbing", "ymin": "pec", "ymax": {"kind": "impedance", "ohms": 321}}, air=(1, 0), conductors={"mode": "hollow", "surface": "lossy"})
-        (self.out / "b.json").write_text(json.dumps(board))
+        import jsonschema
         (self.out / "s.json").write_text(json.dumps(study))
+        for solver in ("palace", "elmer", "mfem", "dolfinx"):
+            ring = {"name": "C", "net": "A", "at": {"point": [5, 2], "layer": "bottom"}, "shape": "coaxial"}
+            holed = {**board, "vias": [{"at": [5, 2], "drill": 0.4, "net": "A"}]}
+            (self.out / "b.json").write_text(json.dumps(holed))
+            (self.out / "ring.json").write_text(json.dumps({**study, "ports": [ring]}))
+            done = run("mesh", self.out / "b.json", "--study", self.out / "ring.json", "--for", solver, "-o", self.out / f"ring_{solver}")
+            if solver != "palace":
+                self.assertIn("coaxial port 'C'", done.stderr)
+                self.assertNotEqual(done.returncode, 0)
+                continue
+            self.assertEqual(done.returncode, 0, done.stderr)
+            deck = json.loads((self.out / "ring_palace/b.palace.json").read_text())
+            self.assertEqual(deck["Boundaries"]["LumpedPort"][0]["Direction"], "-R")
+            jsonschema.Draft7Validator(json.loads((ROOT / "tests/decks/palace.schema.json").read_text())).validate(deck)
+            done = run("check", self.out / "ring_palace/b.msh", "--profile", "palace")
+            self.assertEqual(done.returncode, 0, done.stdout)
+        (self.out / "b.json").write_text(json.dumps(board))
         for solver in ("palace", "elmer", "mfem", "dolfinx"):
             done = run("mesh", self.out / "b.json", "--study", self.out / "s.json", "--for", solver, "-o", self.out / solver)
             self.assertEqual(done.returncode, 0, done.stderr)
         deck = json.loads((self.out / "palace/b.palace.json").read_text())
         tags = {f["name"]: f["id"] for f in json.loads((self.out / "palace/b.tags.json").read_text())["faces"]}
-        import jsonschema
         jsonschema.Draft7Validator(json.loads((ROOT / "tests/decks/palace.schema.json").read_text())).validate(deck)
         boundaries = deck["Boundaries"]
         self.assertEqual(deck["Model"]["L0"], 1.0)

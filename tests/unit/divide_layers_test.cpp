@@ -132,11 +132,12 @@ TEST(DivideLayers, D1_D2_D3_HoldAcrossFacesForRandomStacks) {
 }
 
 TEST(DivideLayers, EachBoundIsNamedWhereItDecides) {
-  const auto slabs = slabs_of({100 * um, 100 * um, 100 * um, 100 * um, 100 * um});
-  std::vector<SlabLimits> limits(5);
+  const auto slabs = slabs_of({100 * um, 100 * um, 100 * um, 100 * um, 100 * um, 100 * um});
+  std::vector<SlabLimits> limits(6);
+  limits[5].port_count = 2;
   limits[1].wavelength_height_m = 30e-6;
   limits[2].least_count = 3;
-  const std::vector<int> counts{1, 2, 2, 2, 1};
+  const std::vector<int> counts{1, 2, 2, 2, 1, 1};
   const DividedLayers equal = divide_layers(slabs, counts, limits, std::nullopt);
   const auto cause = [](const DividedLayers& d, std::size_t s) { return d.layers[s].cause; };
   EXPECT_EQ(cause(equal, 0), HeightCause::slab);
@@ -145,6 +146,8 @@ TEST(DivideLayers, EachBoundIsNamedWhereItDecides) {
   EXPECT_EQ(cause(equal, 2), HeightCause::across);
   EXPECT_EQ(equal.layers[2].count, 3);
   EXPECT_EQ(cause(equal, 3), HeightCause::policy);
+  EXPECT_EQ(cause(equal, 5), HeightCause::port);
+  EXPECT_EQ(equal.layers[5].count, 2);
   limits[4].face_height_m = 1e-6;
   const DividedLayers graded = divide_layers(slabs, counts, limits, std::nullopt);
   EXPECT_EQ(cause(graded, 4), HeightCause::skin_depth);

@@ -178,7 +178,9 @@ TEST(NativeMesh, ComesBackEqual) {
                     .width_m = 2e-3,
                     .positive_net = 1,
                     .negative_net = 0,
-                    .at_m = {1, 2, 3}}};
+                    .at_m = {1, 2, 3}},
+                   {.name = "p2", .kind = mesh::PortKind::coaxial, .direction = {0, 0, 0}},
+                   {.name = "p3"}};
     parts.face_tags[1].condition = mesh::BoundaryCondition::port;
     parts.face_tags[1].port = 0;
     parts.face_tags[2].condition = mesh::BoundaryCondition::impedance;

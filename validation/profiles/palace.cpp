@@ -63,7 +63,7 @@ void judge_port(const checks::Context& context, const FaceGroup& port, const std
         "profile.palace.port_not_planar",
         fmt::format("port {} '{}' is not flat: corners lie up to {:.3g} off its plane", port.tag, port.name, shape.off_plane),
         1, {place_of(context, port)});
-  } else if (!shape.is_rectangle) {
+  } else if (!shape.is_rectangle && !port.is_coaxial) {
     log.found("profile.palace.port_not_rectangular",
               fmt::format("port {} '{}' does not fill a rectangle; only coaxial ports (direction R) may do without", port.tag,
                           port.name),

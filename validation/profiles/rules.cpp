@@ -44,6 +44,11 @@ std::vector<FaceGroup> face_groups(const checks::Context& context) {
     group.tag = context.face_tags.tag(static_cast<int>(slot));
     group.name = context.name_of(2, group.tag);
     group.role = role_of(context, group.tag, group.name);
+    if (context.expectation == nullptr) continue;
+    const auto& expected = context.expectation->faces;
+    const auto face = std::ranges::find(expected, group.tag, &Expectation::Face::tag);
+    group.is_coaxial =
+        face != expected.end() && !face->port.empty() && std::ranges::count(context.expectation->coaxial_ports, face->port) > 0;
   }
   for (std::int64_t face = 0; face < context.num_faces(); ++face) {
     groups[static_cast<std::size_t>(context.face_tags.slot(context.tag_of_face(face)))].faces.push_back(face);

@@ -17,6 +17,7 @@ struct FaceGroup {
   std::int32_t tag = 0;
   std::string name;
   FaceRole role = FaceRole::unknown;
+  bool is_coaxial = false;          ///< of a coaxial port, by tags.json
   std::vector<std::int64_t> faces;  ///< tagged faces, ascending
   [[nodiscard]] bool is_conductor() const { return role == FaceRole::conductor || role == FaceRole::sheet; }
 };

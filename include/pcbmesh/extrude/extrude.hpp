@@ -28,7 +28,7 @@ namespace pcbmesh::extrude {
 /// @param net_pieces     per net of the model, or empty = not known; handed on to the mesh, as is `touching_nets`.
 /// @guarantee E1  every face between a prism and a void or the outside has exactly one tag
 /// @guarantee E2  no face tag has faces between two prisms and faces of the boundary
-/// @guarantee E3  the faces of a lumped port are its rectangle, and its edges lie on its two conductors
+/// @guarantee E3  the faces of a lumped port are its rectangle or ring, and its edges lie on its two conductors
 /// @throws Error port_invalid (306) naming every port that is otherwise
 /// @throws Error internal (901) if the plan or the planar mesh was made for another model.
 /// @cost O(triangles x slabs); memory O(triangles + regions x slabs + boundary faces of one sub-layer per slab).

@@ -20,6 +20,7 @@ namespace pcbmesh::layering {
 struct SlabLimits {
   double wavelength_height_m = std::numeric_limits<double>::infinity();  ///< no sub-layer higher than this
   int least_count = 1;                                                   ///< elements across a dielectric
+  int port_count = 1;                                                    ///< elements along the ports that stand in it
   double face_height_m = std::numeric_limits<double>::infinity();        ///< of the first sub-layer at each face: skin depth
   double skin_depth_m = 0;                                               ///< 0 = no meshed copper, or not asked for
 };
@@ -27,9 +28,9 @@ struct SlabLimits {
 /// Slowest wave of a slab, as a factor on the vacuum's: sqrt(eps_r mu_r) of its material, and of what lies outside the board.
 [[nodiscard]] double slowness(const model::Model& model, const model::Slab& slab);
 
-/// Wavelength in the slab's own material; dielectrics; skin depth sqrt(2 / (omega mu sigma)) of copper that is meshed, cut into
-/// study.skin_depth_layers heights that grow by `height_growth`. @throws Error layering_invalid (501) for copper without
-/// conductivity where the skin depth is asked for.
+/// Wavelength in the slab's own material; dielectrics; upright lumped ports; skin depth sqrt(2 / (omega mu sigma)) of copper
+/// that is meshed, cut into study.skin_depth_layers heights that grow by `height_growth`. @throws Error layering_invalid (501)
+/// for copper without conductivity where the skin depth is asked for.
 [[nodiscard]] std::vector<SlabLimits> slab_limits(const model::Model& model, const study::Study& study);
 
 /// What decided how a slab is cut.
@@ -38,6 +39,7 @@ enum class HeightCause {
   policy,      ///< height policy and sub-layer rule
   wavelength,  ///< elements per wavelength
   across,      ///< elements per dielectric
+  port,        ///< elements along a port
   skin_depth,  ///< grading from the faces of copper
   growth       ///< a neighbour's low sub-layers
 };
@@ -62,7 +64,7 @@ struct DividedLayers {
 /// Cuts each slab into at least `counts` sub-layers, and more where the limits ask. Without face heights and `growth` the
 /// sub-layers of a slab are equal; with them they grow geometrically from faces and neighbours.
 ///
-/// @guarantee D1  no sub-layer is higher than its wavelength_height_m or than slab height / max(count, least_count)
+/// @guarantee D1  no sub-layer is higher than its wavelength_height_m or than slab height / max(count, least_count, port_count)
 /// @guarantee D2  the sub-layers at both faces are at most face_height_m
 /// @guarantee D3  neighbouring sub-layers, across slab faces too, differ at most by the factor `growth`
 /// @param growth  ratio, at least 1.1; 2 if empty and any face height is finite

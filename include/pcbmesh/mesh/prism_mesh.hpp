@@ -79,7 +79,12 @@ struct Shell {
 /// "x", "yz" ...; empty for 0.
 [[nodiscard]] std::string axes_text(std::uint8_t stretched);
 
-enum class PortKind { lumped, wave };
+enum class PortKind {
+  lumped,  ///< a rectangle between two conductors
+  wave,    ///< on the hull
+  coaxial  ///< a flat ring round a barrel: lumped, its field radial
+};
+[[nodiscard]] std::string_view name_of(PortKind kind);
 
 /// A port: one or several face groups, from its positive to its negative terminal.
 struct Port {
@@ -87,9 +92,10 @@ struct Port {
   PortKind kind = PortKind::lumped;
   double impedance_ohm = 50;
   bool is_excited = true;
-  std::array<double, 3> direction{0, 0, 1};  ///< lumped: unit vector of the field, from negative to positive terminal
-  double length_m = 0;                       ///< lumped: distance of the terminals, along direction
-  double width_m = 0;                        ///< lumped: extent across
+  std::array<double, 3> direction{0, 0, 1};  ///< lumped: unit vector of the field, from negative to positive terminal;
+                                             ///< coaxial: 0, for the field points to the axis through at_m
+  double length_m = 0;                       ///< lumped: distance of the terminals, along direction; coaxial: b - a
+  double width_m = 0;                        ///< lumped: extent across; coaxial: 2 pi (b - a) / ln(b / a) of its radii
   std::int32_t positive_net = -1;            ///< net at the positive terminal, -1 = none
   std::int32_t negative_net = -1;            ///< reference net
   std::array<double, 3> at_m{};              ///< middle of the port

@@ -95,6 +95,7 @@ struct Port {
   std::string name;
   std::int64_t study_index = 0;  ///< place in the study's list, for messages
   bool is_wave = false;
+  bool is_coaxial = false;  ///< a cap whose footprint is a ring
   double impedance_ohm = 50;
   bool is_excited = true;
   std::int32_t positive_net = board::no_net;
@@ -103,9 +104,13 @@ struct Port {
   PortFaces faces = PortFaces::wall;
   std::array<geometry::Point, 2> line{};     ///< wall: the segment it stands on
   std::int32_t face = 0;                     ///< cap
-  std::array<double, 3> direction{0, 0, 1};  ///< from the negative to the positive terminal
-  double length_m = 0;                       ///< along direction
-  double width_m = 0;                        ///< across
+  std::array<double, 3> direction{0, 0, 1};  ///< from the negative to the positive terminal; coaxial: 0
+  double length_m = 0;                       ///< along direction; coaxial: outer less inner radius
+  double width_m = 0;                        ///< across; coaxial: 2 pi length / ln(outer / inner)
+  double area_m2 = 0;                        ///< lumped: of its faces
+  double positive_edge_m = 0;                ///< lumped: length of its edge on the positive terminal
+  double negative_edge_m = 0;                ///< lumped: on the negative terminal
+  double longest_edge_m = 0;                 ///< study's bound on edges of its faces; 0 = none
   std::array<double, 3> at_m{};              ///< middle
 };
 

@@ -33,7 +33,7 @@ enum class PortShape {
   automatic,  ///< vertical where a reference lies above or below, else gap
   vertical,   ///< upright, from the reference on another layer to the net
   gap,        ///< flat, across the gap to the reference on the same layer
-  coaxial     ///< flat ring in the antipad of a via
+  coaxial     ///< flat ring in the antipad of a via, from the plane to the barrel or its pad
 };
 
 /// Sides of the domain. `side` stands for all other outer walls, those of a polygon too.
@@ -44,8 +44,8 @@ inline constexpr std::size_t num_hull_sides = 7;
 struct PortPlace {
   std::string pin{};                       ///< component pin, "J1.2"
   std::optional<geometry::Point> point{};  ///< place on the board
-  std::string layer{};                     ///< copper layer of the net at that point; empty = found
-  std::optional<HullSide> side{};          ///< where the region cuts the net: xmin, xmax, ymin or ymax
+  std::string layer{};             ///< copper layer of the net at that point, of the plane round a coaxial port; empty = found
+  std::optional<HullSide> side{};  ///< where the region cuts the net: xmin, xmax, ymin or ymax
   bool operator==(const PortPlace&) const = default;
 };
 
@@ -61,11 +61,12 @@ struct Port {
   bool excited = true;
   std::optional<Nm> width{};   ///< extent along the conductor's cross-section; empty = the conductor's width
   std::optional<Nm> height{};  ///< wave: height above the reference; empty = up to the next reference or the end of the domain
+  std::optional<Nm> max_edge{};  ///< longest edge on its faces; empty = two elements at least across and along, wave: no bound
   bool operator==(const Port&) const = default;
 };
 
 enum class BoundaryKind {
-  automatic,  ///< absorbing; none where a lumped port lies on the side, since an absorbing wall would load it
+  automatic,  ///< absorbing; none where a lumped port lies on the side, or a ring may lie right at it, for it would be loaded
   none,       ///< nothing is said: the solver's natural condition
   absorbing,  ///< first-order absorbing boundary
   pec,        ///< electric wall; symmetry plane of odd fields

@@ -62,6 +62,8 @@ struct TriangulateResult {
 /// @guarantee T2  each triangle lies in exactly one face of the graph
 /// @guarantee T3  same input and options give the same bytes
 /// @guarantee T5  with split_sheet_chords no edge inside a sheet has both its ends on the sheet's rim
+/// @guarantee T6  inside the footprint of a lumped port no edge is longer than half its width, and half its length if it is
+/// flat; inside that of any port none is longer than the study's bound for it (but not with as_in_paper)
 /// @guarantee T4  refinement ends: vertices are capped, and forced small angles are reported, not chased
 /// @guarantee T6  where the model calls opposite sides periodic, both have the same vertices, in the same order of their ids
 /// @throws Error study_invalid (102) where periodic sides do not show the same, usage (101), planar_crossing_edges (403),

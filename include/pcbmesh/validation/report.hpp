@@ -89,6 +89,7 @@ struct Expectation {
     std::int64_t num_faces = -1;
     double area_m2 = -1;
     std::string kind{};  ///< outer, conductor, sheet, port, wave_port or interface; empty = not said
+    std::string port{};  ///< name of its port; empty = none
   };
   struct Net {
     std::string name;
@@ -112,6 +113,7 @@ struct Expectation {
   std::vector<Layer> layers;                              ///< empty = not known
   std::vector<double> levels_m;                           ///< heights of the levels of nodes, ascending; empty = not known
   std::vector<Periodic> periodic;
+  std::vector<std::string> coaxial_ports;  ///< names
 };
 
 /// Reads the contract tags.json. @throws Error file_unreadable (201), file_syntax (202).

@@ -128,6 +128,21 @@ def coaxial_via(folder, edge_mm=0.3, at_copper_mm=0.05, drill=0.4, outer=2.0, he
     return solved, solved.capacitance()["SIG", "SIG"], per_eps * (4.0 * height + 0.1)
 
 
+def coaxial_line(folder, edge_mm=0.4, hz=3e9, height=10.0, drill=0.6, outer=2.0, eps_r=4.0, ohm_factor=1.0, copper=0.01):
+    """A barrel in a round board with an electric wall about it: a coaxial line, a coaxial port in the antipad at each end."""
+    ohm = exact.ETA0 / math.sqrt(eps_r) * math.log(outer / drill) / (2 * math.pi)
+    antipad = 0.99 * outer
+    made = board("coaxial_line", [("top", copper), ("core", height, eps_r, 0.0), ("bottom", copper)], {"circle": {"at": [0, 0], "diameter": outer}}, ["SIG", "GND"],
+                 vias=[{"at": [0, 0], "drill": drill, "net": "SIG", "antipad": antipad}], planes=[{"layer": "top", "net": "GND"}, {"layer": "bottom", "net": "GND"}])
+    ports = [{"name": name, "net": "SIG", "at": {"point": [0, 0], "layer": layer}, "shape": "coaxial", "impedance": ohm * ohm_factor} for name, layer in (("p1", "top"), ("p2", "bottom"))]
+    sides = {"all": "none", **{side: "pec" for side in ("xmin", "xmax", "ymin", "ymax", "side")}}
+    solved = solve(made, study("driven", edge_mm, ports=ports, sweep=[hz], boundaries=sides, seed="delaunay", conductors={"mode": "hollow", "surface": "pec"},
+                               mesh={"height_policy": "none", "sublayers": "none", "elements_per_wavelength": 25, "tolerance": "1um"}, arcs={"sagitta": "5um"}), folder)
+    s = solved.touchstone()[0][1]
+    k = 2 * math.pi * hz / exact.LIGHT * math.sqrt(eps_r)
+    return solved, s, exact.line_s(ohm, 1j * k, MM * height, ohm * ohm_factor)
+
+
 def coupled_lines(folder, edge_mm, at_copper_mm, strips=((-0.7, 0.3), (0.0, 0.3), (0.7, 0.3)), height=1.0, eps_r=4.0, half=2.0, slice_mm=0.02, **mesh):
     """Thin strips (middle, width) midway between planes, a slice of their length: the capacitance matrix per metre."""
     nets = [f"L{i}" for i in range(len(strips))]

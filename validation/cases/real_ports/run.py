@@ -1,0 +1,75 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Five real boards with ports, for five solvers, with the default study of `pcbmesh init`, and docs/evidence/ports.md.
+
+usage: run.py [--write]
+"""
+import argparse
+import pathlib
+import sys
+import tempfile
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[3] / "tests/decks"))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "solvers"))
+import ports_boards_slow_test as boards  # noqa: E402
+from program import ROOT  # noqa: E402
+
+TEXT = """# Ports on real boards, and on a coaxial line
+
+Made by `validation/cases/real_ports/run.py --write`. Each row is what a user does: `pcbmesh init BOARD --nets NETS --margin 0.5mm --for SOLVER`,
+`pcbmesh mesh BOARD --study ...` with no edit of the study in between, `pcbmesh check MESH --profile SOLVER`. Every check passes with no error; in MSH meshes
+below a million cells Gmsh finds exactly the groups that `tags.json` promises, each with its name, number of elements and area or volume, and every port
+fills its rectangle. For dolfinx, which has no edge elements on prisms, `init` asks for the tetrahedral twin.
+`tests/decks/ports_boards_slow_test.py` repeats it, the two large regions coarsely.
+
+"""
+
+
+def coaxial_lines():
+    """A coaxial line between two coaxial ports, solved by GetDP, beside the formula of a line."""
+    import cases
+    import solve
+    if not solve.has_getdp():
+        return ["GetDP is not installed: not run."]
+    lines = ["A barrel of radius 0.3 mm in a round board of radius 1 mm with an electric wall about it, eps_r 4, 10 mm long, 3 GHz, a coaxial port in the antipad at",
+             "either end (`cases.coaxial_line`), solved by GetDP on prisms. Reference: a line of eta / (2 pi) ln(b / a) ohm.", "",
+             "| longest edge | ports | prisms | S21 | line | error | S11 | line | error |", "|---|---|---|---|---|---|---|---|---|"]
+    show = lambda z: f"{z.real:+.4f} {z.imag:+.4f} i"  # noqa: E731
+    for factor in (1.0, 2.0):
+        for edge in (0.4, 0.2, 0.1):
+            with tempfile.TemporaryDirectory() as scratch:
+                solved, s, wanted = cases.coaxial_line(pathlib.Path(scratch), edge, ohm_factor=factor)
+            lines.append(f"| {edge} mm | {'matched' if factor == 1 else 'of twice its impedance'} | {solved.prisms:,} | {show(s[1][0])} | {show(complex(wanted[1]))} | {abs(s[1][0] - wanted[1]):.4f} "
+                         f"| {show(s[0][0])} | {show(complex(wanted[0]))} | {abs(s[0][0] - wanted[0]):.4f} |")
+    return lines
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--write", action="store_true", help="write docs/evidence/ports.md")
+    options = parser.parse_args()
+    boards.gmsh.initialize()
+    boards.gmsh.option.setNumber("General.Terminal", 0)
+    lines = ["| region | nets | solver | ports | cells | elements along, across | worst ratio of edges on a port | CPU s |", "|---|---|---|---|---|---|---|---|"]
+    for case in boards.BOARDS:
+        for solver in boards.SOLVERS:
+            with tempfile.TemporaryDirectory() as scratch:
+                row = boards.look_at(*case, solver, pathlib.Path(scratch))
+            least = min((p["elements_along"], p["elements_across"]) for p in row["quality"])
+            worst = max(p["worst_aspect"] for p in row["quality"])
+            name = f"{row['kind']}, {row['board'].split('_v')[0]}"
+            lines.append(f"| {name} | {row['nets']} | {solver} | {len(row['ports'])} | {row['cells']:,} | {least[0]}, {least[1]} | {worst:.1f} | {row['cpu_s']:.1f} |")
+            print(lines[-1], flush=True)
+    boards.gmsh.finalize()
+    for fault in boards.faults:
+        print("FAULT:", fault)
+    coaxial = coaxial_lines()
+    print("\n".join(coaxial))
+    if options.write and not boards.faults:
+        text = TEXT + "\n".join(lines) + "\n\nCPU seconds of `init`, `mesh` (with its own check) and `check` together.\n\n## Coaxial ports\n\n" + "\n".join(coaxial) + "\n"
+        (ROOT / "docs/evidence/ports.md").write_text(text)
+    return 1 if boards.faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
