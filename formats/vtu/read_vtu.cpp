@@ -113,7 +113,9 @@ mesh::MeshData read_vtu(const std::filesystem::path& file, const Progress& progr
   if (!has_piece) reader.fail(*grid, "the file holds no Piece");
   read_name_tables(reader, *grid, mesh);
   mesh.turn_wedges_if_inside_out();
-  return mesh.take();
+  mesh::MeshData out = mesh.take();
+  out.format.name = "vtu";
+  return out;
 }
 
 }  // namespace pcbmesh::formats::vtu

@@ -204,17 +204,20 @@ mesh::MeshData Reader::read() {
   if (domain == nullptr) fail(tree.root, "the file holds no Domain");
   read_grids(*domain);
   if (!has_grid_) fail(*domain, "the file holds no Grid");
+  mesh::MeshData out = mesh_.take();
+  out.format.name = "xdmf";
   // Names stand in the numbers' file, where it is one of ours.
   for (const auto& [name, reader] : heavy_)
     for (const int dimension : {2, 3}) {
+      if (dimension == 2 && out.faces.empty()) continue;  // they belong to another light file
       const std::string path = std::string("/VTKHDF/FieldData/") + (dimension == 3 ? "volume" : "face");
       if (!reader->has(path + "_names") || !reader->has(path + "_tags")) continue;
       const auto names = reader->texts(path + "_names");
       const auto tags = reader->integers(path + "_tags");
       for (std::size_t i = 0; i < std::min(names.size(), tags.size()); ++i)
-        mesh_.add_name(dimension, static_cast<std::int32_t>(tags[i]), names[i]);
+        out.names.push_back({dimension, static_cast<std::int32_t>(tags[i]), names[i]});
     }
-  return mesh_.take();
+  return out;
 }
 
 }  // namespace

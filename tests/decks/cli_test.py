@@ -167,6 +167,17 @@ class Cli(unittest.TestCase):
         self.assertEqual(target.read_text(), "old")
         self.assertEqual([name for name in self.leftovers() if name.endswith(".part")], [])
 
+    def test_a_file_of_cells_alone_is_no_broken_mesh(self):
+        for name in ("a.vtu", "b.xdmf"):
+            for conductors in ("solid", "hollow", "sheet"):
+                done = run("mesh", ROOT / "examples/microstrip.json", "--conductors", conductors, "-o", self.out / name)
+                self.assertEqual(done.returncode, 0, done.stdout)
+                self.assertRegex(done.stdout, r"check +passed", name)
+                found = {f["code"] for f in run_json("check", self.out / name)["findings"]}
+                self.assertEqual(found, {"face.none_tagged"}, "cells and names are judged, faces are said to be absent")
+        (self.out / "a.vtu").write_bytes((self.out / "a.vtu").read_bytes().replace(b'Name="volume_tag"', b'Name="volume_tug"'))
+        self.assertEqual(run("check", self.out / "a.vtu").returncode, 1, "cells without tags are a fault all the same")
+
     def test_convert_hands_the_tags_on(self):
         run("mesh", SERPENTINE, "--air", "0", "-o", self.out / "a.msh", "--no-check")
         done = run("convert", self.out / "a.msh", self.out / "b.vtu", "--split", "tets", "--unit", "mm")

@@ -29,8 +29,10 @@ void report_tagged(const Context& context, const FaceMatch& match, CheckLog& log
                     match.untagged.count(), match.boundary.size()),
         match.untagged, PlaceKind::half_face);
   } else if (context.num_cells() > 0) {
-    log.found("face.none_tagged", FindingSeverity::warning,
-              "the mesh has no tagged faces: whether its boundary is whole can be judged from geometry only");
+    log.found(
+        "face.none_tagged", FindingSeverity::warning,
+        "the mesh has no tagged faces: whether its boundary is whole can be judged from geometry only, and boundaries and "
+        "ports not at all (a VTU file gets its faces with --faces)");
   }
   log.found("face.tagged_twice", FindingSeverity::error,
             fmt::format("{} tagged faces repeat another tagged face", match.tagged_twice.count()), match.tagged_twice,
