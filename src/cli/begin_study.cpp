@@ -15,7 +15,7 @@ namespace pcbmesh::cli {
 BegunStudy begin_study(const StudyOptions& options) {
   StudyOptions without = options;
   without.solver.clear();
-  BegunStudy begun{study_from(without)};
+  BegunStudy begun{unchecked_study_from(without)};
   begun.solver = options.solver.empty() ? begun.study.solver : study::parse_solver(options.solver);
   begun.study.solver = study::Solver::none;
   return begun;
@@ -32,6 +32,7 @@ void take_first_answers(const StudyOptions& options, study::Study& study) {
 }
 
 pipeline::StartedStudy settle_study(const board::Board& board, const StudyOptions& options, BegunStudy begun) {
+  study::check(begun.study);
   pipeline::StartedStudy started = pipeline::start_study(board, std::move(begun.study));
   started.study.solver = begun.solver;
   if (options.split.empty() && study::needs_tetrahedra(started.study)) started.study.split = study::ElementSplit::tetrahedra;
