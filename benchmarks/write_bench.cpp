@@ -184,7 +184,7 @@ void measure(const mesh::PrismMesh& mesh, const Case& what, const std::filesyste
     reset_peak();
     const double before = peak_mb();
     written.push_back(seconds_of([&] {
-      mesh::PrismSource source(mesh, layering::prism_quality);
+      mesh::PrismSource source(mesh, layering::prism_qualities);
       formats::write_mesh(source, mesh_file, what.options, what.format, Progress{});
     }));
     growth = std::max(growth, peak_mb() - before);

@@ -18,6 +18,10 @@ double power_three_halves(double x) {
   return x * std::sqrt(x);
 }
 
+[[gnu::always_inline]] inline double quality_of(double area, double beta, double height) {
+  return 32.0 * sqrt3 / 3.0 * area * height / power_three_halves(beta + height * height);
+}
+
 }  // namespace
 
 double triangle_quality(double area, double beta) {
@@ -25,7 +29,11 @@ double triangle_quality(double area, double beta) {
 }
 
 double prism_quality(double area, double beta, double height) {
-  return 32.0 * sqrt3 / 3.0 * area * height / power_three_halves(beta + height * height);
+  return quality_of(area, beta, height);
+}
+
+void prism_qualities(std::span<const mesh::PrismBase> bases, double height, std::span<double> qualities) {
+  for (std::size_t i = 0; i < bases.size(); ++i) qualities[i] = quality_of(bases[i][0], bases[i][1], height);
 }
 
 double optimal_height(double beta) {

@@ -299,7 +299,7 @@ void PrismSource::visit_field(std::size_t block, CellField field, const VisitVal
   const PlanarMesh& planar = mesh_.planar();
   std::vector<double> values;
   if (field == CellField::quality && shapes_.empty()) survey_shapes();
-  std::vector<std::array<double, 2>> shapes;
+  std::vector<PrismBase> shapes;
   visit_pieces(tag_index_of(blocks_[block]), [&](std::int32_t slab, std::span<const std::int32_t> few) {
     values.resize(few.size());
     if (field == CellField::region)
@@ -315,7 +315,7 @@ void PrismSource::visit_field(std::size_t block, CellField field, const VisitVal
       const double height = mesh_.plan().height_m(k);
       if (field == CellField::sublayer) std::ranges::fill(values, k);
       if (field == CellField::quality && height != last_height)  // most slabs are cut evenly
-        std::ranges::transform(shapes, values.begin(), [&](const auto& s) { return quality_(s[0], s[1], height); });
+        quality_(shapes, height, values);
       last_height = height;
       for (std::span<const double> rest = values; !rest.empty(); rest = rest.subspan(std::min(chunk, rest.size())))
         visit(rest.first(std::min(chunk, rest.size())));

@@ -18,11 +18,11 @@ ElementSource::ElementSource(const MeshBoardResult& result) {
     options.longest_sagitta_m = static_cast<double>(study.arcs.sagitta_nm) * metres_per_nm;
     for (const geometry::OutlineCircle& circle : result.circles)
       options.circles.push_back({{circle.x_nm * metres_per_nm, circle.y_nm * metres_per_nm}, circle.radius_nm * metres_per_nm});
-    auto source = std::make_unique<extrude::SecondOrderSource>(result.mesh, std::move(options), layering::prism_quality);
+    auto source = std::make_unique<extrude::SecondOrderSource>(result.mesh, std::move(options), layering::prism_qualities);
     second_order_ = source->statistics();
     prisms_ = std::move(source);
   } else {
-    prisms_ = std::make_unique<mesh::PrismSource>(result.mesh, layering::prism_quality);
+    prisms_ = std::make_unique<mesh::PrismSource>(result.mesh, layering::prism_qualities);
   }
   if (study.split == study::ElementSplit::tetrahedra) tetrahedra_ = std::make_unique<extrude::TetrahedralSource>(*prisms_);
 }

@@ -22,8 +22,11 @@ using testing::contents;
 using testing::error_of;
 using testing::Folder;
 
-double quality(double area, double beta, double height) {
-  return area * height / beta;
+void quality(std::span<const mesh::PrismBase> bases, double height, std::span<double> qualities) {
+  for (std::size_t i = 0; i < bases.size(); ++i) {
+    const auto [area, beta] = bases[i];
+    qualities[i] = area * height / beta;
+  }
 }
 
 /// False, with a word, in a build without the library.

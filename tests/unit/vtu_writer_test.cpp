@@ -19,8 +19,11 @@ using testing::contents;
 using testing::error_of;
 using testing::Folder;
 
-double quality(double area, double beta, double height) {
-  return area * height / beta;
+void quality(std::span<const mesh::PrismBase> bases, double height, std::span<double> qualities) {
+  for (std::size_t i = 0; i < bases.size(); ++i) {
+    const auto [area, beta] = bases[i];
+    qualities[i] = area * height / beta;
+  }
 }
 
 /// One appended array, found by name the way a reader does.

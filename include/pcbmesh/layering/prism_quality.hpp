@@ -3,11 +3,13 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "pcbmesh/mesh/layer_plan.hpp"
 #include "pcbmesh/mesh/planar_mesh.hpp"
 #include "pcbmesh/mesh/prism_mesh.hpp"
+#include "pcbmesh/mesh/prism_source.hpp"
 
 namespace pcbmesh::layering {
 
@@ -19,6 +21,8 @@ inline constexpr double max_prism_quality = 1.0264004785593347;
 [[nodiscard]] double triangle_quality(double area, double beta);
 /// Prism quality q_p = (32 sqrt(3)/3) V / (h1^2 + h2^2 + h3^2 + h4^2)^(3/2). @source eq. 2.
 [[nodiscard]] double prism_quality(double area, double beta, double height);
+/// The same, to the last bit, for prisms of one height: several at a time. Fits mesh::PrismQuality.
+void prism_qualities(std::span<const mesh::PrismBase> bases, double height, std::span<double> qualities);
 /// Height of best quality, sqrt(beta / 2). @source eq. 3.
 [[nodiscard]] double optimal_height(double beta);
 /// q_p(h) / q_p(h*) as a function of s = h / h*: the same curve for every triangle. F6 of docs/evidence/paper.md.

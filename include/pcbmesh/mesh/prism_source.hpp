@@ -11,8 +11,10 @@
 
 namespace pcbmesh::mesh {
 
-/// Quality of a prism from area and sum of squared edges of its triangle, and its height.
-using PrismQuality = std::function<double(double area_m2, double beta_m2, double height_m)>;
+/// Area (m2) and sum of squared edges (m2) of a prism's triangle: with the height, all that its quality depends on.
+using PrismBase = std::array<double, 2>;
+/// Qualities of the prisms of one height over some triangles. REQUIRES as many qualities as bases.
+using PrismQuality = std::function<void(std::span<const PrismBase> bases, double height_m, std::span<double> qualities)>;
 
 /// The prisms and tagged faces of an implicit mesh, block by block. Prisms of a tag come slab by slab, a few triangles through
 /// all its sub-layers at a time.
@@ -65,8 +67,8 @@ class PrismSource final : public MeshSource {
   PrismQuality quality_;
   std::vector<std::vector<std::int32_t>> slabs_of_tag_;
   std::vector<SlabGroups> cache_;
-  std::array<LevelRanks, 3> level_ranks_;      ///< bottom, inside and top of the slab that is being written
-  std::vector<std::array<double, 2>> shapes_;  ///< area and sum of squared edges by triangle, once the quality is asked for
+  std::array<LevelRanks, 3> level_ranks_;  ///< bottom, inside and top of the slab that is being written
+  std::vector<PrismBase> shapes_;          ///< by triangle, once the quality is asked for
   std::size_t max_cached_ = 2;
   std::uint64_t clock_ = 0;
 };

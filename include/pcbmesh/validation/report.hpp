@@ -130,7 +130,7 @@ struct CheckOptions {
 /// Runs every check. Shares no code with the generator. The same mesh gives the same report (but for cpu_s), whatever the
 /// number of threads.
 /// @param expectation  null: only what the mesh itself promises is checked.
-/// @cost about 62 bytes per cell beyond the mesh; face matching about 5 million cells a second.
+/// @cost about 50 bytes per cell beyond the mesh; face matching about 5 million cells a second.
 [[nodiscard]] Report check(const mesh::MeshData& mesh, const Expectation* expectation, const CheckOptions& options = {});
 
 /// For people: verdict, checks with counts, findings grouped with first places.
