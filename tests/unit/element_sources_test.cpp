@@ -52,7 +52,7 @@ void expect_sound(mesh::MeshSource& source) {
 // D1, D2: the checker, which shares no code, finds neither a gap nor a fold; volumes of every tag are kept.
 TEST(TetrahedralSource, TwinIsConformingWithTheSameVolumes_D1_D2) {
   const mesh::PrismMesh mesh = mesh::PrismMesh::from_parts(testing::sample_parts());
-  mesh::PrismSource prisms(mesh, [](double, double, double height) { return height; });
+  mesh::PrismSource prisms(mesh, [](auto, double height, std::span<double> out) { std::ranges::fill(out, height); });
   TetrahedralSource twin(prisms);
   EXPECT_EQ(twin.num_nodes(), prisms.num_nodes());
   EXPECT_EQ(twin.num_elements(3), 3 * prisms.num_elements(3));

@@ -59,7 +59,9 @@ TEST(PrismSource, GroupsNameWhatTheyHold) {
 TEST(PrismSource, FieldsComeInTheOrderOfThePrisms) {
   const PrismMeshParts parts = testing::sample_parts();
   const PrismMesh mesh = PrismMesh::from_parts(parts);
-  PrismSource source(mesh, [](double area, double beta, double height) { return area + 1e3 * beta + height; });
+  PrismSource source(mesh, [](std::span<const PrismBase> bases, double height, std::span<double> out) {
+    std::ranges::transform(bases, out.begin(), [&](const PrismBase& base) { return base[0] + 1e3 * base[1] + height; });
+  });
   std::vector<std::array<double, 3>> nodes(static_cast<std::size_t>(mesh.num_nodes()));
   source.fill_nodes(0, nodes);
   std::map<std::array<std::int64_t, 6>, std::int64_t> id_of;
