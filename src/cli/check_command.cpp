@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "formats/sink/file_sink.hpp"
 #include "pcbmesh/base/error.hpp"
 #include "pcbmesh/formats/registry.hpp"
 #include "pcbmesh/pipeline/write_outputs.hpp"
@@ -18,6 +17,7 @@
 #include "pcbmesh/validation/profiles.hpp"
 #include "pcbmesh/validation/report.hpp"
 #include "src/cli/commands.hpp"
+#include "src/cli/mesh_input.hpp"
 #include "src/cli/terminal.hpp"
 
 namespace pcbmesh::cli {
@@ -30,26 +30,18 @@ struct Options {
   int threads = 2;
 };
 
-/// "board.msh" -> "board.tags.json", if that file is there.
-std::string tags_beside(const std::string& mesh) {
-  std::filesystem::path file(mesh);
-  if (file.extension() == ".gz") file.replace_extension();
-  file.replace_extension(".tags.json");
+/// The tags.json of a mesh, if there is one.
+std::string find_tags(const std::string& mesh) {
+  const std::filesystem::path file = tags_beside(mesh);
   return std::filesystem::exists(file) ? file.string() : std::string();
-}
-
-void write_text(const std::string& file, const std::string& text) {
-  formats::FileSink sink(file);
-  sink.put(text);
-  sink.commit();
 }
 
 void write_reports(const Options& options, const validation::Report& report, const mesh::MeshData& mesh,
                    validation::FindingSeverity threshold) {
-  if (!options.junit.empty()) write_text(options.junit, validation::to_junit(report, options.mesh, threshold));
-  if (!options.sarif.empty()) write_text(options.sarif, validation::to_sarif(report, options.mesh));
-  if (!options.html.empty()) write_text(options.html, validation::to_html(report, options.mesh));
-  if (!options.offenders.empty()) write_text(options.offenders, validation::to_offenders_vtu(report, mesh));
+  if (!options.junit.empty()) pipeline::write_binary_file(options.junit, validation::to_junit(report, options.mesh, threshold));
+  if (!options.sarif.empty()) pipeline::write_binary_file(options.sarif, validation::to_sarif(report, options.mesh));
+  if (!options.html.empty()) pipeline::write_binary_file(options.html, validation::to_html(report, options.mesh));
+  if (!options.offenders.empty()) pipeline::write_binary_file(options.offenders, validation::to_offenders_vtu(report, mesh));
 }
 
 int explain(const std::string& code) {
@@ -90,7 +82,7 @@ int run(const Options& options) {
   if (!options.explain.empty()) return explain(options.explain);
   if (options.mesh.empty()) throw Error(ErrorCode::usage, "check needs a mesh file, --list or --explain CODE");
   if (options.no_tags && !options.tags.empty()) throw Error(ErrorCode::usage, "--tags and --no-tags exclude each other");
-  const std::string tags = options.no_tags ? "" : !options.tags.empty() ? options.tags : tags_beside(options.mesh);
+  const std::string tags = options.no_tags ? "" : !options.tags.empty() ? options.tags : find_tags(options.mesh);
   require_distinct_files(options, tags);
   const auto threshold =
       options.fail_on == "warning" ? validation::FindingSeverity::warning : validation::FindingSeverity::error;

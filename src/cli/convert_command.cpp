@@ -14,6 +14,7 @@
 #include "pcbmesh/mesh/mesh_data_source.hpp"
 #include "pcbmesh/validation/report.hpp"
 #include "src/cli/commands.hpp"
+#include "src/cli/mesh_input.hpp"
 #include "src/cli/terminal.hpp"
 
 namespace pcbmesh::cli {
@@ -23,11 +24,6 @@ struct Options {
   std::string in, out, from, to, msh_version, mfem_version, unit, input_unit, split;
   bool ascii = false, quiet = false;
 };
-
-std::filesystem::path tags_beside(std::filesystem::path mesh) {
-  if (mesh.extension() == ".gz" || mesh.extension() == ".xz") mesh.replace_extension();
-  return mesh.replace_extension(".tags.json");
-}
 
 /// A mesh file does not say its unit; the tags.json beside it may.
 double input_unit_m(const Options& options) {

@@ -7,6 +7,11 @@
 
 namespace pcbmesh::cli {
 
+std::filesystem::path tags_beside(std::filesystem::path mesh) {
+  if (mesh.extension() == ".gz" || mesh.extension() == ".xz") mesh.replace_extension();
+  return mesh.replace_extension(".tags.json");
+}
+
 std::optional<MeshInput> read_if_mesh(const std::filesystem::path& file, const std::string& input_unit,
                                       const Progress& progress) {
   const formats::MeshFormat* format = formats::find_mesh_format(file);
@@ -17,9 +22,7 @@ std::optional<MeshInput> read_if_mesh(const std::filesystem::path& file, const s
     return out;
   }
   out.cells = std::make_shared<mesh::MeshData>(formats::read_mesh(file, {}, progress));
-  std::filesystem::path tags = file;
-  if (tags.extension() == ".gz" || tags.extension() == ".xz") tags.replace_extension();
-  tags.replace_extension(".tags.json");
+  const std::filesystem::path tags = tags_beside(file);
   if (std::filesystem::exists(tags)) out.tags = validation::read_expectation(tags.string());
   if (!input_unit.empty()) {
     out.unit_m = metres_per(parse_length_unit(input_unit));

@@ -22,6 +22,9 @@ struct MeshInput {
   std::string unit_source{};                      ///< of the cells: where the unit comes from
 };
 
+/// "board.msh" or "board.msh.gz" -> "board.tags.json", whether it is there or not.
+[[nodiscard]] std::filesystem::path tags_beside(std::filesystem::path mesh);
+
 /// The mesh in a file; nothing if the file is no mesh, and so a board.
 /// @param input_unit  "mm"...; empty = from the tags.json beside it, else metres
 /// @throws Error usage (101) for a unit that is none; and those of reading.

@@ -7,20 +7,6 @@
 namespace pcbmesh::view {
 namespace {
 
-Json names_json(const CellMesh& mesh) {
-  Json layers = Json::array(), materials = Json::array(), nets = Json::array();
-  for (std::size_t i = 0; i < mesh.layers().size(); ++i)
-    layers.push_back(
-        {{"name", mesh.layers()[i]}, {"colour", hex(layer_colour(static_cast<std::int32_t>(i), mesh.layers().size()))}});
-  for (std::size_t i = 0; i < mesh.materials().size(); ++i) {
-    const auto material = static_cast<std::int32_t>(i);
-    materials.push_back(material_json(mesh.materials()[i], material_colour(mesh.materials(), material)));
-  }
-  for (std::size_t i = 0; i < mesh.nets().size(); ++i)
-    nets.push_back({{"name", mesh.nets()[i]}, {"colour", hex(net_colour(static_cast<std::int32_t>(i)))}});
-  return {{"layers", layers}, {"materials", materials}, {"nets", nets}};
-}
-
 /// Colours per mode, so that the page needs no rules of its own.
 Json groups_json(const CellMesh& mesh) {
   std::vector<CellPaint> paints;
@@ -91,7 +77,7 @@ std::string report_html(const CellMesh& mesh, const PageContents& contents) {
   const PackedCells packed = pack(mesh);
   Json tables = shared_tables(contents, packed);
   tables["kind"] = "cells";
-  tables.update(names_json(mesh));
+  tables.update(names_json(mesh.layers(), mesh.materials(), mesh.nets()));
   tables["modes"] = modes_json(mesh);
   tables["num_cells"] = mesh.num_cells();
   tables["num_bands"] = mesh.num_bands();

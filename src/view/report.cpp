@@ -12,20 +12,6 @@
 namespace pcbmesh::view {
 namespace {
 
-Json names_json(const mesh::PrismMesh& mesh) {
-  Json layers = Json::array(), materials = Json::array(), nets = Json::array();
-  for (std::size_t i = 0; i < mesh.layers().size(); ++i)
-    layers.push_back(
-        {{"name", mesh.layers()[i]}, {"colour", hex(layer_colour(static_cast<std::int32_t>(i), mesh.layers().size()))}});
-  for (std::size_t i = 0; i < mesh.materials().size(); ++i) {
-    const auto material = static_cast<std::int32_t>(i);
-    materials.push_back(material_json(mesh.materials()[i], material_colour(mesh.materials(), material)));
-  }
-  for (std::size_t i = 0; i < mesh.nets().size(); ++i)
-    nets.push_back({{"name", mesh.nets()[i]}, {"colour", hex(net_colour(static_cast<std::int32_t>(i)))}});
-  return {{"layers", layers}, {"materials", materials}, {"nets", nets}};
-}
-
 Json groups_json(const mesh::PrismMesh& mesh) {
   const std::vector<char> air = air_groups(mesh);
   const Paint by_net(mesh, ColourMode::net);
@@ -117,7 +103,7 @@ Json modes_json() {
 Json tables_json(const mesh::PrismMesh& mesh, const PageContents& contents, const PackedMesh& packed) {
   Json out = shared_tables(contents, packed);
   out["kind"] = "prisms";
-  out.update(names_json(mesh));
+  out.update(names_json(mesh.layers(), mesh.materials(), mesh.nets()));
   out["modes"] = modes_json();
   out["num_cells"] = mesh.num_prisms();
   out["groups"] = groups_json(mesh);

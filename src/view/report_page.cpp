@@ -83,6 +83,20 @@ Json material_json(const board::Material& m, Rgb colour) {
                                    : "dielectric"}};
 }
 
+Json names_json(std::span<const std::string> layers, std::span<const board::Material> materials,
+                std::span<const std::string> nets) {
+  Json layer_rows = Json::array(), material_rows = Json::array(), net_rows = Json::array();
+  for (std::size_t i = 0; i < layers.size(); ++i)
+    layer_rows.push_back({{"name", layers[i]}, {"colour", hex(layer_colour(static_cast<std::int32_t>(i), layers.size()))}});
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    const auto material = static_cast<std::int32_t>(i);
+    material_rows.push_back(material_json(materials[i], material_colour(materials, material)));
+  }
+  for (std::size_t i = 0; i < nets.size(); ++i)
+    net_rows.push_back({{"name", nets[i]}, {"colour", hex(net_colour(static_cast<std::int32_t>(i)))}});
+  return {{"layers", layer_rows}, {"materials", material_rows}, {"nets", net_rows}};
+}
+
 std::string figure(const std::string& svg) {
   return "<figure>" + svg + "</figure>\n";
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 
 #include "pcbmesh/view/paint.hpp"
@@ -15,6 +16,9 @@ using Json = nlohmann::ordered_json;
 /// What every page carries beside its mesh: title, places, ramp, arrays.
 [[nodiscard]] Json shared_tables(const PageContents& contents, const PackedArrays& packed);
 [[nodiscard]] Json material_json(const board::Material& material, Rgb colour);
+/// Layers, materials and nets with their colours.
+[[nodiscard]] Json names_json(std::span<const std::string> layers, std::span<const board::Material> materials,
+                              std::span<const std::string> nets);
 /// The page. @param plots  figures, as HTML.
 [[nodiscard]] std::string fill_page(const Json& tables, const PackedArrays& packed, const std::string& plots,
                                     const PageContents& contents);
