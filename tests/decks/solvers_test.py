@@ -42,6 +42,13 @@ class Solvers(unittest.TestCase):
         self.assertTrue(all(0 < e < 0.01 for e in errors[1]), errors)
         self.assertTrue(all(coarse / fine > 3 for coarse, fine in zip(*errors)), errors)
 
+    def test_cavity_of_bricks_has_the_digits_of_an_independent_code(self):
+        """k0^2 of the first mode as noted for such bricks of another mesh generator."""
+        for bricks, wanted in ((4, 25.145), (8, 22.8166)):
+            solved, found = cases.box_cavity(self.out, bricks)
+            self.assertEqual(solved.prisms, 2 * bricks ** 3)
+            self.assertEqual(f"{found:.{len(str(wanted).split('.')[1])}f}", str(wanted))
+
     def test_tem_line_converges_with_the_square_of_the_edge(self):
         errors = []
         for edge in (10, 5, 2.5):

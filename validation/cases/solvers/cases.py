@@ -42,6 +42,28 @@ def cavity(folder, edge_mm, size=(100, 90, 70), **run):
     return solved, [(f, w) for f, w in zip(found, wanted)][:3]
 
 
+def box_cavity(folder, n, size=(100, 90, 70), **run):
+    """The same box of n x n x n bricks, each cut into two prisms, diagonals turning from brick to brick; the first k0^2, lengths in units of the
+    longest side. The bricks are drawn as triangles of copper in two nets, which alternate so that no edge between them is lost."""
+    def corner(i, j):
+        return [size[0] * i / n, size[1] * j / n]
+
+    triangles = {"A": [], "B": []}
+    for i in range(n):
+        for j in range(n):
+            square = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)]
+            halves = ((0, 1, 2), (0, 2, 3)) if (i + j) % 2 == 0 else ((0, 1, 3), (1, 2, 3))
+            for half, net in zip(halves, "AB" if i % 2 == 0 else "BA"):
+                triangles[net].append([square[corner] for corner in half])
+    made = board("box", [("top", 1.0), ("space", size[2], 1.0, 0.0), ("bottom", 1.0)], rect(0, 0, size[0], size[1]), ["A", "B", "GND"],
+                 polygons=[{"layer": "top", "net": net, "points": points} for net, each in triangles.items() for points in each],
+                 planes=[{"layer": "bottom", "net": "GND"}])
+    solved = solve(made, study("eigenmode", size[0], boundaries={"all": "pec"}, modes={"number": 3, "above": 0.95 * exact.cavity_hz([MM * s for s in size])[0]}, seed="delaunay",
+                               conductors={"mode": "sheet", "surface": "pec"},
+                               mesh={"height_policy": "none", "sublayers": "none", "elements_per_dielectric": n, "min_angle_deg": 1}), folder, **run)
+    return solved, (2 * math.pi * solved.resonances_hz()[0] * MM * size[0] / exact.LIGHT) ** 2
+
+
 # ---- lines --------------------------------------------------------------------------------------------------------
 
 def tem_line(folder, edge_mm, hz=3e9, tan_delta=0.0, ohm_factor=1.0, boundaries=None, eps_r=4.0, **run):
