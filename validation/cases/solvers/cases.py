@@ -165,7 +165,7 @@ def coaxial_line(folder, edge_mm=0.4, hz=3e9, height=10.0, drill=0.6, outer=2.0,
     return solved, s, exact.line_s(ohm, 1j * k, MM * height, ohm * ohm_factor)
 
 
-def coupled_lines(folder, edge_mm, at_copper_mm, strips=((-0.7, 0.3), (0.0, 0.3), (0.7, 0.3)), height=1.0, eps_r=4.0, half=2.0, slice_mm=0.02, **mesh):
+def coupled_lines(folder, edge_mm, at_copper_mm, strips=((-0.7, 0.3), (0.0, 0.3), (0.7, 0.3)), height=1.0, eps_r=4.0, half=2.0, slice_mm=0.02, run=None, **mesh):
     """Thin strips (middle, width) midway between planes, a slice of their length: the capacitance matrix per metre."""
     nets = [f"L{i}" for i in range(len(strips))]
     made = board("coupled", [("top", 0.02), ("upper", height / 2, eps_r, 0.0), ("mid", 0.02), ("lower", height / 2, eps_r, 0.0), ("bottom", 0.02)],
@@ -173,7 +173,7 @@ def coupled_lines(folder, edge_mm, at_copper_mm, strips=((-0.7, 0.3), (0.0, 0.3)
                  tracks=[{"layer": "mid", "net": net, "width": w, "points": [[-0.5, y], [slice_mm + 0.5, y]]} for net, (y, w) in zip(nets, strips)],
                  planes=[{"layer": "top", "net": "GND"}, {"layer": "bottom", "net": "GND"}])
     solved = solve(made, study("electrostatic", edge_mm, region=[0, -half, slice_mm, half], seed="delaunay", conductors={"mode": "sheet", "surface": "pec"},
-                               mesh={"edge_at_copper": at_copper_mm, "growth": 0.4, **mesh}), folder)
+                               mesh={"edge_at_copper": at_copper_mm, "growth": 0.4, **mesh}), folder, **(run or {}))
     found = solved.capacitance()
     wanted = exact.strips_between_planes([(MM * (y - w / 2), MM * (y + w / 2)) for y, w in strips], MM * height, eps_r)
     return solved, [[found[a, b] / (MM * slice_mm) for b in nets] for a in nets], wanted
