@@ -165,15 +165,17 @@ def coaxial_line(folder, edge_mm=0.4, hz=3e9, height=10.0, drill=0.6, outer=2.0,
     return solved, s, exact.line_s(ohm, 1j * k, MM * height, ohm * ohm_factor)
 
 
-def coupled_lines(folder, edge_mm, at_copper_mm, strips=((-0.7, 0.3), (0.0, 0.3), (0.7, 0.3)), height=1.0, eps_r=4.0, half=2.0, slice_mm=0.02, run=None, **mesh):
-    """Thin strips (middle, width) midway between planes, a slice of their length: the capacitance matrix per metre."""
+def coupled_lines(folder, edge_mm, at_copper_mm, strips=((-0.7, 0.3), (0.0, 0.3), (0.7, 0.3)), height=1.0, eps_r=4.0, half=2.0, slice_mm=0.02, ply_mm=0, run=None, **mesh):
+    """Thin strips (middle, width) midway between planes, a slice of their length: the capacitance matrix per metre. `ply_mm`: the dielectric is drawn with
+    plies of this thickness beside the strips, from which heights can grow."""
     nets = [f"L{i}" for i in range(len(strips))]
-    made = board("coupled", [("top", 0.02), ("upper", height / 2, eps_r, 0.0), ("mid", 0.02), ("lower", height / 2, eps_r, 0.0), ("bottom", 0.02)],
+    near = [("near_upper", ply_mm, eps_r, 0.0), ("mid", 0.02), ("near_lower", ply_mm, eps_r, 0.0)] if ply_mm else [("mid", 0.02)]
+    made = board("coupled", [("top", 0.02), ("upper", height / 2 - ply_mm, eps_r, 0.0), *near, ("lower", height / 2 - ply_mm, eps_r, 0.0), ("bottom", 0.02)],
                  rect(-1, -half - 1, slice_mm + 1, half + 1), nets + ["GND"],
                  tracks=[{"layer": "mid", "net": net, "width": w, "points": [[-0.5, y], [slice_mm + 0.5, y]]} for net, (y, w) in zip(nets, strips)],
                  planes=[{"layer": "top", "net": "GND"}, {"layer": "bottom", "net": "GND"}])
     solved = solve(made, study("electrostatic", edge_mm, region=[0, -half, slice_mm, half], seed="delaunay", conductors={"mode": "sheet", "surface": "pec"},
-                               mesh={"edge_at_copper": at_copper_mm, "growth": 0.4, **mesh}), folder, **(run or {}))
+                               mesh={"edge_at_copper": at_copper_mm, **{"growth": 0.4, **mesh}}), folder, **(run or {}))
     found = solved.capacitance()
     wanted = exact.strips_between_planes([(MM * (y - w / 2), MM * (y + w / 2)) for y, w in strips], MM * height, eps_r)
     return solved, [[found[a, b] / (MM * slice_mm) for b in nets] for a in nets], wanted
