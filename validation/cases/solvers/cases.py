@@ -199,12 +199,8 @@ def via_transition(folder, edge_mm=0.6, at_copper_mm=0.25, hz=(2e9, 6e9), tan_de
 
 # ---- wave ports ---------------------------------------------------------------------------------------------------
 
-def wave_port(name, net, side, reference="GND", **more):
-    return {"name": name, "net": net, "reference": reference, "at": {"side": side}, "kind": "wave", **more}
-
-
-def guided(folder, kind, edge_mm, at_copper_mm, hz=(2e9,), length=10.0, eps_r=None, half=None, air=3.0, ports=wave_port, boundaries=None, tan_delta=0.0, **mesh):
-    """A strip or microstrip from side to side of the region, a wave port over the whole of both ends."""
+def guided(folder, kind, edge_mm, at_copper_mm, hz=(2e9,), length=10.0, eps_r=None, half=None, air=3.0, kinds=("wave", "wave"), ohm=50, boundaries=None, tan_delta=0.0, mode="sheet", **mesh):
+    """A strip or microstrip from side to side of the region; wave ports cover the whole of an end."""
     width, eps_r, half = {"stripline": (0.5, eps_r or 4.0, half or 1.5), "microstrip": (1.1, eps_r or 3.66, half or 3.0)}[kind]
     if kind == "stripline":
         layers, air, on = [("top", 0.035), ("upper", 0.5, eps_r, tan_delta), ("mid", 0.035), ("lower", 0.5, eps_r, tan_delta), ("bottom", 0.035)], 0, "mid"
@@ -213,7 +209,7 @@ def guided(folder, kind, edge_mm, at_copper_mm, hz=(2e9,), length=10.0, eps_r=No
     made = board(kind, layers, rect(-2, -half - 2, length + 2, half + 2), ["LINE", "GND"],
                  tracks=[{"layer": on, "net": "LINE", "width": width, "points": [[-1, 0], [length + 1, 0]]}],
                  planes=[{"layer": layer, "net": "GND"} for layer in (("top", "bottom") if kind == "stripline" else ("bottom",))])
-    ends = [ports("p1", "LINE", "xmin", width=2 * half), ports("p2", "LINE", "xmax", width=2 * half)]
+    ends = [port(name, "LINE", side, ohm, **({"kind": "wave", "width": 2 * half} if each == "wave" else {})) for name, side, each in zip(("p1", "p2"), ("xmin", "xmax"), kinds)]
     solved = solve(made, study("driven", edge_mm, ports=ends, sweep=hz, region=[0, -half, length, half], air=(air, 0), seed="delaunay", boundaries=boundaries,
-                               conductors={"mode": "sheet", "surface": "pec"}, mesh={"edge_at_copper": at_copper_mm, "growth": 0.5, **mesh}), folder)
+                               conductors={"mode": mode, "surface": "pec"}, mesh={"edge_at_copper": at_copper_mm, "growth": 0.5, **mesh}), folder)
     return solved, solved.touchstone()
