@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Decks that run: native boards through pcbmesh to GetDP and back to numbers, judged by closed formulas. The short form of
 validation/cases/solvers."""
+import cmath
 import json
+import math
 import pathlib
 import re
 import shlex
@@ -93,6 +95,19 @@ class Solvers(unittest.TestCase):
         self.assertGreater(abs(s[0][0]), 0.5)
         self.assertLess(abs(s[0][0] - wanted[0]), 0.01)
         self.assertLess(abs(s[1][0] - wanted[1]), 0.01)
+
+    def test_wave_ports_take_the_mode_and_nothing_else(self):
+        """A lossless microstrip: the electric and the magnetic profile of its mode differ, and a port that took one for the other would lose 5 % of the power."""
+        solved, ((_, s),) = cases.guided(self.out, "microstrip", 1.0, 0.3, hz=[5e9], length=3, air=2.5)
+        ohm, effective = exact.microstrip(1.1e-3, 0.508e-3, 3.66)
+        self.assertLess(abs(solved.port_impedances()[0] / ohm - 1), 0.03)
+        self.assertLess(abs(1 - abs(s[0][0]) ** 2 - abs(s[1][0]) ** 2), 1e-9)
+        self.assertLess(abs(s[0][0]), 0.005)
+        delay = -cmath.phase(s[1][0]) / (2 * math.pi * 5e9 * 3e-3) * exact.LIGHT
+        self.assertLess(abs(delay / math.sqrt(effective) - 1), 0.02)
+        _, ((_, mixed),) = cases.guided(self.out, "microstrip", 1.0, 0.3, hz=[5e9], length=3, air=2.5, kinds=("wave", "lumped"))
+        self.assertLess(abs(mixed[0][1] - mixed[1][0]), 1e-6)
+        self.assertLess(max(abs(mixed[0][0]), abs(mixed[1][1])), 0.3)
 
     def test_via_transition_is_passive_and_reciprocal(self):
         _, sweep = cases.via_transition(self.out, hz=(4e9,))
