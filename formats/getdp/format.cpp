@@ -35,7 +35,6 @@ Deck write(const mesh::PrismMesh& mesh, const DeckOptions& options, const std::f
            Diagnostics& diagnostics) {
   const deck::FieldProblem problem = state(mesh, options, diagnostics);
   const std::string stem = problem.stem();
-  const deck::ResultFiles results = deck::result_files(problem);
   std::string text, resolution;
   switch (options.problem) {
     case Problem::driven:
@@ -53,16 +52,10 @@ Deck write(const mesh::PrismMesh& mesh, const DeckOptions& options, const std::f
   }
   Deck deck;
   deck::put_file(folder / (stem + ".pro"), text, deck);
-  deck::put_run_script(
-      folder / (stem + ".run.sh"),
-      fmt::format(
-          "Solves {} with GetDP (Debian: apt-get install getdp) and ends in {}. GETDP, PCBMESH: where the programs are.",
-          deck::plain(options.mesh), deck::plain(results.final)),
-      fmt::format("\"${{GETDP:-getdp}}\" {} -msh {} -solve {} -v 3\n{}", deck::shell_word(stem + ".pro"),
-                  deck::shell_word(options.mesh), resolution, results.after),
-      deck);
-  deck.result = results.final;
-  deck.calls_pcbmesh = options.problem == Problem::driven;
+  deck::put_run_script(folder, problem, "GetDP (Debian: apt-get install getdp)", "GETDP, PCBMESH: where the programs are.",
+                       fmt::format("\"${{GETDP:-getdp}}\" {} -msh {} -solve {} -v 3", deck::shell_word(stem + ".pro"),
+                                   deck::shell_word(options.mesh), resolution),
+                       deck);
   return deck;
 }
 

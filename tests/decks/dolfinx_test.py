@@ -2,36 +2,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The dolfinx deck, run: against closed formulas, and against GetDP on the same elements, where two codes must agree to rounding."""
 import json
-import pathlib
-import sys
-import tempfile
 import unittest
 
-from program import ROOT, SKIPPED, run
+from program import run
+from solver_cases import InFolder, cases, codes, require, solve
 
-sys.path.insert(0, str(ROOT / "validation/cases/solvers"))
-try:
-    import cases
-    import codes
-    import solve
-except ImportError as missing:
-    print(f"skipped: {missing}; scripts/setup installs it")
-    sys.exit(SKIPPED)
-if not solve.has_dolfinx():
-    print("skipped: dolfinx is not installed; scripts/setup installs it")
-    sys.exit(SKIPPED)
+require(solve.has_dolfinx(), "dolfinx is not installed; scripts/setup installs it")
 
 SECOND = {"DEGREE": "2"}
 
 
-class Dolfinx(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.out = pathlib.Path(self.folder.name)
-
-    def tearDown(self):
-        self.folder.cleanup()
-
+class Dolfinx(InFolder):
     def twin_of_getdp(self, case, *arguments, **more):
         """Port results of GetDP on the tetrahedral twin that twin.py cuts."""
         solved = case(self.out / "getdp", *arguments, **more)[0]
