@@ -23,9 +23,7 @@ namespace {
 class Spoiled final : public mesh::MeshSource {
  public:
   using Spoil = std::function<void(std::size_t block, std::vector<std::int64_t>& nodes)>;
-  Spoiled(mesh::MeshSource& source, Spoil spoil) : source_(source), spoil_(std::move(spoil)) {
-    announce_as(source);
-  }
+  Spoiled(mesh::MeshSource& source, Spoil spoil) : source_(source), spoil_(std::move(spoil)) { announce_as(source); }
   [[nodiscard]] mesh::Extent extent_of(std::size_t group) override { return source_.extent_of(group); }
   [[nodiscard]] bool has_tagged_hull() const override { return true; }
   void fill_nodes(std::int64_t first, std::span<std::array<double, 3>> out) override { source_.fill_nodes(first, out); }

@@ -117,8 +117,9 @@ class MeshSource {
   /// Node ids (from 0) of a block's elements, nodes_of(kind) each, at most `chunk` elements a call, in file order.
   virtual void visit(std::size_t block, const VisitNodes& visit) = 0;
   [[nodiscard]] virtual bool has_field(CellField) const { return false; }
-  /// Box around all nodes of a group, in the source's unit; all zero if the group is empty. Elements of second order may make it
-  /// wider than it need be, never narrower. @cost about one look at the group's elements: only formats that state it should ask.
+  /// Box around all nodes of a group, in the source's unit; all zero if the group is empty. Elements of second order may make
+  /// it wider than it need be, never narrower. @cost about one look at the group's elements: only formats that state it should
+  /// ask.
   [[nodiscard]] virtual Extent extent_of(std::size_t group) = 0;
   /// One value per element of a block of cells, in the order of visit(). REQUIRES has_field().
   virtual void visit_field(std::size_t block, CellField field, const VisitValues& visit);
