@@ -35,6 +35,19 @@ std::vector<std::int32_t> conductors(const deck::FieldProblem& problem, std::int
   return ids;
 }
 
+/// Does the port's rectangle reach into perfectly matched layers, where static fields mean nothing?
+bool reaches_into(const mesh::Shell& shell, const mesh::Port& port) {
+  constexpr double on_side_m = 1e-9;
+  const bool faces_x =
+      std::min(std::abs(port.at_m[0] - shell.outer_min_m[0]), std::abs(port.at_m[0] - shell.outer_max_m[0])) < on_side_m;
+  const std::size_t across = faces_x ? 1 : 0;
+  const auto outside = [&](std::size_t axis, double extent_m) {
+    return port.at_m[axis] - 0.5 * extent_m < shell.inner_min_m[axis] - on_side_m ||
+           port.at_m[axis] + 0.5 * extent_m > shell.inner_max_m[axis] + on_side_m;
+  };
+  return outside(across, port.width_m) || outside(2, port.length_m);
+}
+
 std::string permittivity(const std::vector<deck::Medium>& media, double unit_m) {
   std::string out;
   for (std::size_t i = 0; i < media.size(); ++i)
@@ -62,6 +75,8 @@ void require_tem_ports(const deck::FieldProblem& problem, Diagnostics& diagnosti
     };
     if (net < 0 || conductors(problem, net, true).empty()) refuse("no signal conductor leads to it, as in a hollow waveguide");
     if (conductors(problem, net, false).empty()) refuse("no second conductor leads to it to carry the current back");
+    if (problem.shell && reaches_into(*problem.shell, port.port))
+      refuse("it reaches into the perfectly matched layers, so give it a width and a height that end before them");
     double slowest = 1;
     for (const deck::Medium& medium : media_of(problem, port)) {
       if (medium.material.mu_r != 1)

@@ -261,7 +261,13 @@ TEST(GetdpDeck, WavePortsThatAreNoTemOnesAreRefused) {
   alone.face_tags[0].condition = BoundaryCondition::pmc;
   EXPECT_NE(refused(alone).find("no second conductor"), std::string::npos);
   EXPECT_NE(refused(wave_line(4, {"ferrite", 4, 0, 10, 0}, {0, 1})).find("'ferrite'"), std::string::npos);
+  auto layered = wave_line(4, {"d", 4, 0, 1, 0}, {0, 1});
+  for (const std::size_t p : {0, 1}) layered.ports[p].at_m = {0.1 * static_cast<double>(p), 0.01, 0.005};
+  layered.shell = mesh::Shell{{0, 0, 0}, {0.1, 0.02, 0.008}, {0, 0, 0}, {0.1, 0.02, 0.01}};
+  EXPECT_NE(refused(layered).find("matched layers"), std::string::npos);
   EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << "nothing is written";
+  layered.shell->inner_max_m[2] = 0.01;  // as high as the port
+  write(layered);
   options.frequencies_hz = {1e9, 5e9};  // half a wave is 15 mm, the port 20 mm wide
   write(wave_line(4, {"d", 4, 0, 1, 0}, {0, 1}));
   EXPECT_EQ(diagnostics.count("deck.wide_wave_port"), 2);
