@@ -267,6 +267,14 @@ struct KnownFaults {
   }
 };
 
+/// Nets that the study names for their own sake: those of the region, and those with ports, whose faces no snapping may bend.
+std::vector<std::int32_t> nets_of_interest(const Board& board, const Study& study, const ResolvedNames& names) {
+  std::vector<std::int32_t> nets = names.nets;
+  for (const study::Port& port : study.ports)
+    if (const auto net = board.find_net(port.net); net && std::ranges::find(nets, *net) == nets.end()) nets.push_back(*net);
+  return nets;
+}
+
 /// The domain, with those of its ports that can be placed. What is wrong with ports goes into `faults`.
 model::Model build(const Board& board, const Study& study, const ResolvedNames& names, MaterialTable materials,
                    std::vector<study::Fault>& faults, Diagnostics& diagnostics) {
@@ -277,7 +285,7 @@ model::Model build(const Board& board, const Study& study, const ResolvedNames& 
   model::ModelParts parts;
   parts.source = board.source();
   parts.nets.assign(board.nets().begin(), board.nets().end());
-  parts.nets_of_interest = names.nets;
+  parts.nets_of_interest = nets_of_interest(board, study, names);
   add_domain_and_board(footprint, stack, parts);
   measure_narrowest(board, footprint, parts);
   add_copper(board, study, names.rules, footprint, stack, parts, diagnostics);
