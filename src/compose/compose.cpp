@@ -187,16 +187,20 @@ ResolvedNames resolve_names(const Board& board, const Study& study, MaterialTabl
     if (!resolved.any_layer) resolved.copper_layer = resolver.copper_layer(rule.layer);
     names.rules.push_back(resolved);
   }
-  for (const study::Port& port : study.ports) {
-    (void)resolver.net(port.net);
-    if (!port.reference.empty()) (void)resolver.net(port.reference);
-    if (!port.at.layer.empty()) (void)resolver.copper_layer(port.at.layer);
-  }
   const std::string known_so_far = resolver.text();
   names.holes = resolve_holes(study.fabrication, resolver, materials);
   names.fills = resolve_fills(board, study.fabrication, resolver, materials);
   const std::string unknown = resolver.text();
   if (!unknown.empty()) names.faults.push_back({"", unknown});
+  for (std::size_t i = 0; i < study.ports.size(); ++i) {
+    const study::Port& port = study.ports[i];
+    NameResolver of_port(board);
+    (void)of_port.net(port.net);
+    if (!port.reference.empty()) (void)of_port.net(port.reference);
+    if (!port.at.layer.empty()) (void)of_port.copper_layer(port.at.layer);
+    if (const std::string text = of_port.text(); !text.empty())
+      names.faults.push_back({fmt::format("/ports/{}", i), fmt::format("port '{}': {}", port.name, text)});
+  }
   if (!materials.unknown().empty()) names.faults.push_back({"/materials/use", materials.unknown()});
   if (unknown == known_so_far) check_backdrills(board, study, names.holes, names.faults);
   // Where only terminals of ports are unknown, the other ports can be looked at.
