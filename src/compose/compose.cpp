@@ -338,14 +338,31 @@ model::Model compose(const Board& board, const Study& study, Diagnostics& diagno
   return std::move(*model);
 }
 
-std::vector<PortProposal> propose_ports(const Board& board, const Study& study, Diagnostics& diagnostics) {
+std::vector<PortProposal> propose_ports(const Board& board, const Study& study, PortPlaces places, Diagnostics& diagnostics) {
   MaterialTable materials(board, study, diagnostics);
   const ResolvedNames names = resolve_names(board, study, materials);
   if (const KnownFaults known(board, study, names, materials); !known.is_empty()) known.refuse(board.source(), {});
   const Footprint footprint = build_footprint(board, study, names.nets, diagnostics);
+  Diagnostics ignored;  // the domain is built again with the ports in it
+  MaterialTable again(board, study, ignored);
   const Stack stack =
       build_stack(board, study, find_sheet_layers(board, study, names.rules, footprint), names.fills, materials, diagnostics);
-  return find_ports(board, study, names.rules, footprint, stack, names.nets);
+  std::vector<PortProposal> proposals = find_ports(board, study, names.rules, footprint, stack, names.nets, places);
+  // Held against the finished domain, so that what is proposed can be meshed.
+  Study with = study;
+  with.ports.clear();
+  for (const PortProposal& proposal : proposals)
+    if (proposal.why_not.empty()) with.ports.push_back(proposal.port);
+  std::vector<study::Fault> faults;
+  (void)build(board, with, names, std::move(again), faults, ignored);
+  std::size_t number = 0;
+  for (PortProposal& proposal : proposals) {
+    if (!proposal.why_not.empty()) continue;
+    const auto fault = std::ranges::find(faults, fmt::format("/ports/{}", number++), &study::Fault::field);
+    if (fault != faults.end()) proposal.why_not = fault->text;
+  }
+  name_ports(proposals);
+  return proposals;
 }
 
 }  // namespace pcbmesh::compose
