@@ -133,7 +133,8 @@ std::vector<PortProposal> find_ports(const board::Board& board, const study::Stu
       Outcome outcome = placer.place(proposal.port);
       // A net that ends inside has no cut, and a layer without a plane no antipad: that needs no word.
       if (!outcome.placed && proposal.port.at.side && outcome.fault.find("is not cut") != std::string::npos) continue;
-      if (!outcome.placed && is_coaxial(proposal.port) && outcome.fault.find("no copper surrounds") != std::string::npos) continue;
+      if (!outcome.placed && is_coaxial(proposal.port) && outcome.fault.find("no copper surrounds") != std::string::npos)
+        continue;
       proposal.why_not = outcome.fault;
       if (outcome.placed) {
         const model::Port& found = outcome.placed->port;

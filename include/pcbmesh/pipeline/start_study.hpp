@@ -22,7 +22,6 @@ struct StartedStudy {
 };
 
 /// Proposes lumped ports for study.nets. @throws Error as compose().
-[[nodiscard]] StartedStudy start_study(const board::Board& board, study::Study study,
-                                       PortPlaces places = PortPlaces::ends);
+[[nodiscard]] StartedStudy start_study(const board::Board& board, study::Study study, PortPlaces places = PortPlaces::ends);
 
 }  // namespace pcbmesh::pipeline
