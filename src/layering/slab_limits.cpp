@@ -14,8 +14,8 @@ namespace {
 constexpr double speed_of_light_m_per_s = 299'792'458.0;
 constexpr double vacuum_permeability = 4e-7 * std::numbers::pi;
 constexpr double default_growth = 2;
-/// From one terminal of an upright port to the other, where the study does not say. Lowest edge elements want it: on a line of
-/// 0.19 mm over 0.1 mm of dielectric one element errs four times as much (docs/evidence/ports.md).
+/// From one terminal of an upright port to the other, where the study does not say. The line beside it wants them: over one
+/// lowest edge element of dielectric it errs four times as much as over two (docs/evidence/ports.md).
 constexpr int least_elements_of_port = 2;
 
 double skin_depth_m(const board::Material& metal, double frequency_hz, const model::Slab& slab) {
