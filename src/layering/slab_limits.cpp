@@ -15,7 +15,7 @@ constexpr double speed_of_light_m_per_s = 299'792'458.0;
 constexpr double vacuum_permeability = 4e-7 * std::numbers::pi;
 constexpr double default_growth = 2;
 /// From one terminal of an upright port to the other, where the study does not say. The line beside it wants them: over one
-/// lowest edge element of dielectric it errs four times as much as over two (docs/evidence/ports.md).
+/// lowest edge element of dielectric it errs three times as much as over two (docs/evidence/ports.md).
 constexpr int least_elements_of_port = 2;
 
 double skin_depth_m(const board::Material& metal, double frequency_hz, const model::Slab& slab) {
