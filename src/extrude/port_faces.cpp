@@ -47,15 +47,18 @@ class PortCheck {
   [[nodiscard]] std::string fault(std::size_t number) const {
     const model::Port& port = model_.ports()[number];
     const Found& found = found_[number];
-    if (found.tag < 0) return "has no face in the mesh: it lies in copper or outside the domain; move it";
+    if (found.tag < 0)
+      return "has no face in the mesh: another outline runs within the tolerance of it, or it lies in copper; move it or give "
+             "a smaller tolerance";
     if (found.num_inner > 0 && found.num_outer > 0)
       return "lies on the hull in part; move it inside, or put it on the side itself";
     if (port.is_wave) return found.num_inner > 0 ? "must be on the hull; give a side of the region" : "";
     const double wanted = port.area_m2, area = parts_.face_tags[index(found.tag)].area_m2;
     if (std::abs(area - wanted) > relative_tolerance * wanted)
       return fmt::format(
-          "covers {:.4g} mm2 where its {} has {:.4g} mm2: something stands in it, or it lies over an edge; "
-          "move it or make it narrower",
+          "covers {:.4g} mm2 where its {} has {:.4g} mm2: something stands in it, or an outline within the tolerance of it has "
+          "moved it; "
+          "move it, make it narrower or give a smaller tolerance",
           area * 1e6, port.is_coaxial ? "ring" : "rectangle", wanted * 1e6);
     for (const auto& [length, edge, net, end] :
          {std::tuple{found.positive_m, port.positive_edge_m, port.positive_net, "positive"},
