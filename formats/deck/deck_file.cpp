@@ -34,4 +34,15 @@ ResultFiles result_files(const FieldProblem& problem) {
                       shell_word(rows), shell_word(network), rows, plain(network))};
 }
 
+void put_run_script(const std::filesystem::path& folder, const FieldProblem& problem, std::string_view solver,
+                    std::string_view environment, std::string_view body, Deck& deck) {
+  const ResultFiles results = result_files(problem);
+  put_run_script(folder / (problem.stem() + ".run.sh"),
+                 fmt::format("Solves {} with {} and ends in {}. {}", plain(problem.options.mesh), solver, plain(results.final),
+                             environment),
+                 fmt::format("{}\n{}", body, results.after), deck);
+  deck.result = results.final;
+  deck.calls_pcbmesh = problem.options.problem == Problem::driven;
+}
+
 }  // namespace pcbmesh::formats::deck

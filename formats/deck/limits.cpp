@@ -24,7 +24,8 @@ void require_ports(const Limits& limits, const FieldProblem& problem) {
              "a lumped port on the track beside the via; GetDP and Palace have coaxial ports");
     if (port.port.kind == mesh::PortKind::wave && !limits.wave_ports)
       refuse(limits.solver, fmt::format("wave port '{}' in this deck", port.port.name),
-             "a lumped port across the gap between trace and reference; Palace has wave ports");
+             "a lumped port across the gap between trace and reference; GetDP has wave ports of TEM and quasi-TEM lines, "
+             "Palace of any");
   }
 }
 
