@@ -17,7 +17,7 @@ LINE_MESH = "--air-above 0.6mm --longest-edge 0.4mm --growth 0.6 --height-growth
 # The launch over the cut-out reaches down to In2, 1.4 mm below; its pad is large, its mesh coarser.
 LAUNCH_MESH = "--air-above 0.8mm --longest-edge 0.8mm --growth 1 --height-growth 3 --edge-at-copper {launch_edge}"
 SHORT_PIECE = "--sweep 200MHz,2GHz,4GHz,6GHz"
-LONG_PIECE = "--sweep 200MHz,600MHz,1.2GHz,1.8GHz,2.4GHz,3GHz,3.6GHz,4.2GHz,4.8GHz,5.4GHz,6GHz"
+LONG_PIECE = "--sweep 200MHz,900MHz,1.8GHz,2.7GHz,3.6GHz,4.2GHz,4.8GHz,5.4GHz,6GHz"
 
 # (lowest copper layer kept, flags).
 PIECES = {
@@ -30,8 +30,8 @@ PIECES = {
                f"--port B,net=Net-(J10-Pad1),reference=GND,at=95:-96.9:F.Cu,shape=gap --port P2,net=Net-(J10-Pad1),at=xmax {LAUNCH_MESH} {SHORT_PIECE}"),
     "launch_whole_plane": ("In1.Cu", "--region 120.25,-57.52,127.85,-52 --boundary ymax=none --port A,net=unconnected-(J22-Pad1),reference=GND,at=123.15:-53:F.Cu,shape=gap "
                            f"--port B,net=unconnected-(J22-Pad1),reference=GND,at=124.95:-53:F.Cu,shape=gap --port P2,net=unconnected-(J22-Pad1),at=ymin {LAUNCH_MESH} {SHORT_PIECE}"),
-    "stub": ("In1.Cu", f"--region 108,-99.9,117.3,-95.2 --port P1,net=Net-(J10-Pad1),at=xmin --port P2,net=Net-(J10-Pad1),at=xmax {LINE_MESH} {LONG_PIECE}"),
-    "meander": ("In1.Cu", f"--region 122.4,-71.4,125.75,-57.52 --port P1,net=unconnected-(J22-Pad1),at=ymax {LINE_MESH} {LONG_PIECE}"),
+    "stub": ("In1.Cu", f"--region 109,-99.9,117,-95.2 --port P1,net=Net-(J10-Pad1),at=xmin --port P2,net=Net-(J10-Pad1),at=xmax {LINE_MESH} {LONG_PIECE}"),
+    "meander": ("In1.Cu", f"--region 122.4,-64.7,125.75,-58.4 --port P1,net=unconnected-(J22-Pad1),at=ymax --port P2,net=unconnected-(J22-Pad1),at=ymin {LINE_MESH} {LONG_PIECE}"),
 }
 
 TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|[()]|[^\s()"]+')
