@@ -49,6 +49,9 @@ class Measured(unittest.TestCase):
         equal(found_gamma / gamma, 1, 1e-9, "propagation constant")
         equal(found_z / z, 1, 2e-3, "impedance")  # the capacitance is taken at the lowest frequency
         equal(networks.port_box(pieces[0], gamma, z, 2e-3), box, 1e-9, "field of the port")
+        skin = (1 + 1j) * 1e-5
+        between = numpy.array([3e8, 1e9, 5e9])
+        equal(networks.gamma_between(between, HZ, skin * numpy.sqrt(HZ) + gamma) / (skin * numpy.sqrt(between) + lossy_line(2 * numpy.pi * between)[0]), 1, 1e-9, "constant between the solved frequencies")
 
     def test_calibration_forgets_what_lies_before_its_standards(self):
         gamma, z, box = lossy_line(OMEGA)

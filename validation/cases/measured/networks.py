@@ -73,6 +73,14 @@ def line_between(hz, thru, line, extra_length):
     return gamma, gamma / per_length
 
 
+def gamma_between(wanted_hz, hz, gamma):
+    """Propagation constant at other frequencies: loss of skins goes with the root of frequency and loads the phase as much, loss of the laminate goes with frequency."""
+    root, wanted_root = numpy.sqrt(hz), numpy.sqrt(wanted_hz)
+    loss = numpy.linalg.lstsq(numpy.array([1 / root, numpy.ones_like(hz)]).T, gamma.real / hz, rcond=None)[0]
+    delay = numpy.linalg.lstsq(numpy.array([1 / root, numpy.ones_like(hz)]).T, gamma.imag / hz, rcond=None)[0]
+    return loss[0] * wanted_root + loss[1] * wanted_hz + 1j * (delay[0] * wanted_root + delay[1] * wanted_hz)
+
+
 def port_box(thru, gamma, z_line, length):
     """Chain matrix of the field that a lumped port adds at the end of a line, from one solved line with the same port, mirrored, at its other end.
     A reciprocal two-port so near the identity is a shunt and a series part; Newton's method finds the two that give the solved line."""
