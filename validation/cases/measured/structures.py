@@ -118,6 +118,11 @@ def solve(name, folder, last="In1.Cu", flags=""):
     return found, unknowns
 
 
+def solver_cpu_s(folder):
+    """Processor time of the solver over all pieces in a folder, by its own logs."""
+    return sum(float(re.search(r"Stopped .* CPU = ([\d.]+)s", log.read_text())[1]) for log in folder.glob("*/log"))
+
+
 def solve_piece(name, folder, edge="0.09mm", launch_edge="0.18mm"):
     last, flags = PIECES[name]
     return solve(name, folder, last, f"{flags} {COMMON}".format(edge=edge, launch_edge=launch_edge))
