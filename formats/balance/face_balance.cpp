@@ -129,13 +129,7 @@ std::uint64_t sum_rows(mesh::ElementKind kind, std::span<const std::int64_t> nod
 }  // namespace
 
 FaceBalance::FaceBalance(mesh::MeshSource& source, std::filesystem::path file) : source_(source), file_(std::move(file)) {
-  groups_.assign(source.groups().begin(), source.groups().end());
-  blocks_.assign(source.blocks().begin(), source.blocks().end());
-  layers_.assign(source.layers().begin(), source.layers().end());
-  nets_.assign(source.nets().begin(), source.nets().end());
-  materials_.assign(source.materials().begin(), source.materials().end());
-  num_nodes_ = source.num_nodes();
-  unit_m_ = source.unit_m();
+  announce_as(source);
   sums_.assign(blocks_.size(), 0);
   is_seen_.assign(blocks_.size(), false);
   num_unseen_ = blocks_.size();

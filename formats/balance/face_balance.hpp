@@ -26,6 +26,7 @@ class FaceBalance final : public mesh::MeshSource {
   void fill_nodes(std::int64_t first, std::span<std::array<double, 3>> out) override { source_.fill_nodes(first, out); }
   /// @throws Error internal (901) behind the last element of all blocks, if they don't balance: before the file appears.
   void visit(std::size_t block, const VisitNodes& visit) override;
+  [[nodiscard]] mesh::Extent extent_of(std::size_t group) override { return source_.extent_of(group); }
   [[nodiscard]] bool has_field(mesh::CellField field) const override { return source_.has_field(field); }
   void visit_field(std::size_t block, mesh::CellField field, const VisitValues& visit) override {
     source_.visit_field(block, field, visit);

@@ -14,13 +14,7 @@ std::int32_t first_face_tag(const mesh::MeshSource& source) {
 
 OneNumberSpace::OneNumberSpace(mesh::MeshSource& source) : source_(source) {
   const std::int32_t shift = first_face_tag(source);
-  num_nodes_ = source.num_nodes();
-  unit_m_ = source.unit_m();
-  groups_.assign(source.groups().begin(), source.groups().end());
-  blocks_.assign(source.blocks().begin(), source.blocks().end());
-  layers_.assign(source.layers().begin(), source.layers().end());
-  nets_.assign(source.nets().begin(), source.nets().end());
-  materials_.assign(source.materials().begin(), source.materials().end());
+  announce_as(source);
   for (mesh::ElementGroup& group : groups_)
     if (group.dimension == 2) group.tag += shift;
   for (mesh::ElementBlock& block : blocks_)

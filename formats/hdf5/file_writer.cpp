@@ -69,6 +69,7 @@ struct FileWriter::State {
     const Handle attribute(H5Acreate2(owner.id(), name.c_str(), type, space.id(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
     require(attribute.is_valid() && H5Awrite(attribute.id(), type, value) >= 0, "write the attribute " + name);
   }
+  void put_texts(const std::string& path, hid_t type, hsize_t size, const void* values) const;
 
   WriterOptions options;
   QuietErrors quiet;
@@ -200,24 +201,32 @@ void FileWriter::put_attribute(const std::string& object, const std::string& nam
 }
 
 void FileWriter::put_strings(const std::string& path, std::span<const std::string> texts) {
-  // Of fixed length: every reader takes them, and no heap of the library wastes 4 kB for each table.
   std::size_t width = 1;
   for (const std::string& text : texts) width = std::max(width, text.size());
   std::string bytes;
   for (const std::string& text : texts) bytes += text + std::string(width - text.size(), '\0');
-  const hsize_t size = texts.size();
-  const Handle type(H5Tcopy(H5T_C_S1), H5Tclose), space(H5Screate_simple(1, &size, nullptr), H5Sclose);
+  const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
   H5Tset_size(type.id(), width);
   H5Tset_strpad(type.id(), H5T_STR_NULLPAD);
   H5Tset_cset(type.id(), H5T_CSET_UTF8);
+  state_->put_texts(path, type.id(), texts.size(), bytes.data());
+}
+
+void FileWriter::put_strings_for_vtk(const std::string& path, std::span<const std::string> texts) {
+  std::vector<const char*> pointers;
+  for (const std::string& text : texts) pointers.push_back(text.c_str());
+  const Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type.id(), H5T_VARIABLE);
+  state_->put_texts(path, type.id(), pointers.size(), pointers.data());
+}
+
+void FileWriter::State::put_texts(const std::string& path, hid_t type, hsize_t size, const void* values) const {
+  const Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);
   const Handle create(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_obj_track_times(create.id(), false);
-  const Handle dataset(
-      H5Dcreate2(state_->file.id(), path.c_str(), type.id(), space.id(), state_->links.id(), create.id(), H5P_DEFAULT),
-      H5Dclose);
-  state_->require(dataset.is_valid(), "make " + path);
-  if (texts.empty()) return;
-  state_->require(H5Dwrite(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, bytes.data()) >= 0, "write " + path);
+  const Handle dataset(H5Dcreate2(file.id(), path.c_str(), type, space.id(), links.id(), create.id(), H5P_DEFAULT), H5Dclose);
+  require(dataset.is_valid(), "make " + path);
+  if (size > 0) require(H5Dwrite(dataset.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0, "write " + path);
 }
 
 std::unique_ptr<ArraySink> FileWriter::begin(const std::string& path, NumberType type, std::int64_t num_rows,

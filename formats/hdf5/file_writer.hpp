@@ -38,7 +38,11 @@ class FileWriter {
   void put_attribute(const std::string& object, const std::string& name, std::string_view text);
   void put_attribute(const std::string& object, const std::string& name, std::span<const std::int64_t> values);
   void put_attribute(const std::string& object, const std::string& name, double value);
+  /// Texts of one fixed length, UTF-8: no heap of the library wastes 4 kB on them.
   void put_strings(const std::string& path, std::span<const std::string> texts);
+  /// Texts of variable length whose bytes are declared ASCII, whatever they are: VTK's reader converts to no other type, and
+  /// the library converts neither from fixed length nor from UTF-8.
+  void put_strings_for_vtk(const std::string& path, std::span<const std::string> texts);
   /// A small data set at once, of one dimension or, with columns, of two.
   template <class Value>
   void put(const std::string& path, std::span<const Value> values, std::int64_t num_columns = 0) {

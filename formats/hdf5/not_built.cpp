@@ -31,6 +31,7 @@ void FileWriter::put_attribute(const std::string&, const std::string&, std::stri
 void FileWriter::put_attribute(const std::string&, const std::string&, std::span<const std::int64_t>) {}
 void FileWriter::put_attribute(const std::string&, const std::string&, double) {}
 void FileWriter::put_strings(const std::string&, std::span<const std::string>) {}
+void FileWriter::put_strings_for_vtk(const std::string&, std::span<const std::string>) {}
 std::unique_ptr<ArraySink> FileWriter::begin(const std::string&, NumberType, std::int64_t, std::int64_t) {
   return nullptr;
 }

@@ -36,9 +36,11 @@ void write_entities(const WriteJob& job) {
                                    static_cast<std::int64_t>(groups.size()) - num_surfaces})
     out.size(count);
   out.end_line();
-  for (const mesh::ElementGroup& group : groups) {  // faces stand before volumes, as the section wants it
+  for (std::size_t i = 0; i < groups.size(); ++i) {  // faces stand before volumes, as the section wants it
+    const mesh::ElementGroup& group = groups[i];
+    const mesh::Extent extent = job.source.extent_of(i);
     out.integer(group.tag);
-    for (const auto& corner : {group.extent.min, group.extent.max})
+    for (const auto& corner : {extent.min, extent.max})
       for (const double x : corner) out.real(x * job.scale);
     out.size(1);
     out.integer(group.tag);

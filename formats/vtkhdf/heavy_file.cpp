@@ -125,12 +125,12 @@ void Writer::write_tables() {
   const std::string field = "/VTKHDF/FieldData/";
   for (const int i : {1, 0}) {
     const std::string kind = i == 1 ? "volume" : "face";
-    file_.put_strings(field + kind + "_names", names[i]);
+    file_.put_strings_for_vtk(field + kind + "_names", names[i]);
     file_.put(field + kind + "_tags", std::span<const std::int32_t>(ids[i]));
   }
-  file_.put_strings(field + "layers", source_.layers());
-  file_.put_strings(field + "materials", materials);
-  file_.put_strings(field + "nets", source_.nets());
+  file_.put_strings_for_vtk(field + "layers", source_.layers());
+  file_.put_strings_for_vtk(field + "materials", materials);
+  file_.put_strings_for_vtk(field + "nets", source_.nets());
 }
 
 HeavyGrid grid_of(const vtk::Piece& piece, ElementKind kind) {
@@ -139,7 +139,8 @@ HeavyGrid grid_of(const vtk::Piece& piece, ElementKind kind) {
           piece.num_elements(),
           mesh::nodes_of(kind),
           piece.num_corners(),
-          piece.cell_arrays()};
+          piece.cell_arrays(),
+          {}};
 }
 
 void Writer::write_rows(const vtk::Piece& piece, ElementKind kind) {
@@ -156,6 +157,7 @@ void Writer::write_cells(HeavyFile& out) {
     const std::string path = path_of(kind);
     if (kinds.size() > 1) write_rows(piece, kind);
     out.cells.push_back(grid_of(piece, kind));
+    if (kinds.size() == 1 && mesh::order_of(kind) == 1) out.cells.back().vtk_path = "/VTKHDF/Connectivity";
     for (const vtk::CellArray array : piece.cell_arrays()) {
       const std::string name(vtk::name_of(array));
       if (kinds.size() == 1)

@@ -20,6 +20,7 @@ struct HeavyGrid {
   std::int64_t num_columns = 0;        ///< nodes per element; 0 for Mixed
   std::int64_t num_numbers = 0;        ///< of the connectivity
   std::vector<vtk::CellArray> arrays;  ///< at path + "_" + name
+  std::string vtk_path{};              ///< the same connectivity as one row of numbers in VTK's order; empty = there is none
 };
 struct HeavyFile {
   std::int64_t num_nodes = 0;

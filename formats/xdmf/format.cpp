@@ -32,7 +32,8 @@ class LightFile {
       : sink_(file), heavy_name_(escaped(heavy_path.filename().string())), heavy_(heavy) {
     sink_.put("<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n <Domain>\n");
   }
-  void put_grid(std::string_view name, const HeavyGrid& grid);
+  /// `for_vtk`: ParaView takes corners as they stand, and its wedges are wound the other way round.
+  void put_grid(std::string_view name, const HeavyGrid& grid, bool for_vtk = false);
   void begin_collection() { sink_.put("  <Grid Name=\"board\" GridType=\"Collection\" CollectionType=\"Spatial\">\n"); }
   void end_collection() { sink_.put("  </Grid>\n"); }
   void save() {
@@ -53,16 +54,17 @@ class LightFile {
   const HeavyFile& heavy_;
 };
 
-void LightFile::put_grid(std::string_view name, const HeavyGrid& grid) {
+void LightFile::put_grid(std::string_view name, const HeavyGrid& grid, bool for_vtk) {
   sink_.put(fmt::format("   <Grid Name=\"{}\" GridType=\"Uniform\">\n    <Geometry GeometryType=\"XYZ\">\n", name));
   put_item(fmt::format("{} 3", heavy_.num_nodes), "Float", 8, "/mesh/points");
   sink_.put(fmt::format("    </Geometry>\n    <Topology TopologyType=\"{}\" NumberOfElements=\"{}\"", grid.topology,
                         grid.num_elements));
   if (grid.num_columns > 0) sink_.put(fmt::format(" NodesPerElement=\"{}\"", grid.num_columns));
   sink_.put(">\n");
-  put_item(
-      grid.num_columns > 0 ? fmt::format("{} {}", grid.num_elements, grid.num_columns) : fmt::format("{}", grid.num_numbers),
-      "Int", heavy_.index_bytes, grid.path);
+  const bool in_vtk_order = for_vtk && !grid.vtk_path.empty();
+  put_item(grid.num_columns > 0 && !in_vtk_order ? fmt::format("{} {}", grid.num_elements, grid.num_columns)
+                                                 : fmt::format("{}", grid.num_numbers),
+           "Int", heavy_.index_bytes, in_vtk_order ? grid.vtk_path : grid.path);
   sink_.put("    </Topology>\n");
   for (const vtk::CellArray array : grid.arrays) {
     sink_.put(fmt::format("    <Attribute Name=\"{}\" AttributeType=\"Scalar\" Center=\"Cell\">\n", vtk::name_of(array)));
@@ -80,32 +82,44 @@ std::filesystem::path beside(const std::filesystem::path& file, std::string_view
   return out;
 }
 
+std::filesystem::path heavy_of(const std::filesystem::path& file) {
+  return beside(file, ".vtkhdf");
+}
+std::filesystem::path faces_of(const std::filesystem::path& file) {
+  return beside(file, "_faces" + file.extension().string());
+}
+std::filesystem::path mixed_of(const std::filesystem::path& file) {
+  return beside(file, "_paraview" + file.extension().string());
+}
+std::vector<std::filesystem::path> parts(const std::filesystem::path& file) {
+  return {heavy_of(file), faces_of(file), mixed_of(file)};
+}
+
 void write(mesh::MeshSource& source, const std::filesystem::path& file, const WriteMeshOptions& options,
            const Progress& progress) {
-  const std::string extension = file.extension().string();
-  const std::filesystem::path heavy_path = beside(file, ".vtkhdf");
+  const std::filesystem::path heavy_path = heavy_of(file);
   std::vector<std::unique_ptr<LightFile>> light;
   const auto write_light = [&](const HeavyFile& heavy) {
-    const auto put_cells = [&](LightFile& out) {
-      for (const HeavyGrid& grid : heavy.cells) out.put_grid(heavy.cells.size() == 1 ? "cells" : grid.topology, grid);
+    const auto put_cells = [&](LightFile& out, bool for_vtk) {
+      for (const HeavyGrid& grid : heavy.cells) out.put_grid(heavy.cells.size() == 1 ? "cells" : grid.topology, grid, for_vtk);
     };
     const auto begin = [&](const std::filesystem::path& name) -> LightFile& {
       return *light.emplace_back(std::make_unique<LightFile>(name, heavy_path, heavy));
     };
     if (!heavy.faces.empty()) {
-      LightFile& faces = begin(beside(file, "_faces" + extension));
+      LightFile& faces = begin(faces_of(file));
       faces.put_grid("faces", heavy.faces.front());
       faces.save();
     }
-    LightFile& all = begin(beside(file, "_paraview" + extension));
+    LightFile& all = begin(mixed_of(file));
     all.begin_collection();
-    put_cells(all);
+    put_cells(all, true);
     for (const HeavyGrid& grid : heavy.faces) all.put_grid("faces", grid);
     all.end_collection();
     all.save();
     LightFile& cells = begin(file);
     if (heavy.cells.size() > 1) cells.begin_collection();
-    put_cells(cells);
+    put_cells(cells, false);
     if (heavy.cells.size() > 1) cells.end_collection();
     cells.save();
   };
@@ -119,6 +133,7 @@ void write(mesh::MeshSource& source, const std::filesystem::path& file, const Wr
 constinit const MeshFormat mesh_format{
     "xdmf",     "XDMF 3 over HDF5 (dolfinx, meshio, ParaView)",
     extensions, write,
-    read_xdmf,  {.written = all_kinds, .readable = all_kinds, .has_tags = true, .has_names = true}};
+    read_xdmf,  {.written = all_kinds, .readable = all_kinds, .has_tags = true, .has_names = true},
+    parts};
 
 }  // namespace pcbmesh::formats::xdmf

@@ -204,6 +204,7 @@ mesh::MeshData Reader::read() {
   if (domain == nullptr) fail(tree.root, "the file holds no Domain");
   read_grids(*domain);
   if (!has_grid_) fail(*domain, "the file holds no Grid");
+  mesh_.turn_wedges_if_inside_out();  // the format is silent about them: dolfinx and ParaView take them in different orders
   mesh::MeshData out = mesh_.take();
   out.format.name = "xdmf";
   // Names stand in the numbers' file, where it is one of ours.

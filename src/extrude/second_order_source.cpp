@@ -22,11 +22,12 @@ std::size_t index(std::int32_t i) {
 
 SecondOrderSource::SecondOrderSource(const mesh::PrismMesh& mesh, SecondOrderOptions options, mesh::PrismQuality quality)
     : mesh_(mesh), prisms_(mesh, std::move(quality)), with_face_nodes_(options.with_face_nodes) {
+  announce_as(prisms_);
   find_edges();
   curve_edges(options);
   make_sets();
   number_nodes(options.with_face_nodes);
-  announce_blocks();
+  announce_kinds();
 }
 
 SecondOrderSource::~SecondOrderSource() = default;
@@ -130,31 +131,28 @@ void SecondOrderSource::number_nodes(bool with_face_nodes) {
   num_nodes_ = next;
 }
 
-void SecondOrderSource::announce_blocks() {
-  groups_.assign(prisms_.groups().begin(), prisms_.groups().end());
-  layers_.assign(prisms_.layers().begin(), prisms_.layers().end());
-  nets_.assign(prisms_.nets().begin(), prisms_.nets().end());
-  materials_.assign(prisms_.materials().begin(), prisms_.materials().end());
-  unit_m_ = prisms_.unit_m();
+void SecondOrderSource::announce_kinds() {
+  for (mesh::ElementBlock& block : blocks_)
+    block.kind = block.kind == ElementKind::triangle ? ElementKind::triangle6
+                 : block.kind == ElementKind::quadrangle
+                     ? with_face_nodes_ ? ElementKind::quadrangle9 : ElementKind::quadrangle8
+                 : with_face_nodes_ ? ElementKind::wedge18
+                                    : ElementKind::wedge15;
+}
+
+mesh::Extent SecondOrderSource::extent_of(std::size_t group) {
   double farthest = 0;  // of a middle from its chord: so much may stand out of a group's corners
   const auto points = mesh_.planar().points_m();
   for (std::size_t e = 0; e < edges_.size(); ++e)
     for (std::size_t i = 0; i < 2; ++i)
       farthest = std::max(farthest,
                           std::abs(middles_m_[e][i] - (points[index(edges_[e][0])][i] + points[index(edges_[e][1])][i]) / 2));
-  for (mesh::ElementGroup& group : groups_)
-    for (std::size_t i = 0; i < 2 && group.num_elements > 0; ++i) {
-      group.extent.min[i] -= farthest;
-      group.extent.max[i] += farthest;
-    }
-  for (mesh::ElementBlock block : prisms_.blocks()) {
-    block.kind = block.kind == ElementKind::triangle ? ElementKind::triangle6
-                 : block.kind == ElementKind::quadrangle
-                     ? with_face_nodes_ ? ElementKind::quadrangle9 : ElementKind::quadrangle8
-                 : with_face_nodes_ ? ElementKind::wedge18
-                                    : ElementKind::wedge15;
-    blocks_.push_back(block);
+  mesh::Extent extent = prisms_.extent_of(group);
+  for (std::size_t i = 0; i < 2 && groups_[group].num_elements > 0; ++i) {
+    extent.min[i] -= farthest;
+    extent.max[i] += farthest;
   }
+  return extent;
 }
 
 void SecondOrderSource::fill_nodes(std::int64_t first, std::span<std::array<double, 3>> out) {

@@ -87,12 +87,8 @@ std::array<std::array<std::uint8_t, 4>, 3> split_wedge(std::span<const std::int6
 }
 
 TetrahedralSource::TetrahedralSource(mesh::MeshSource& whole) : whole_(whole) {
-  num_nodes_ = whole.num_nodes();
-  unit_m_ = whole.unit_m();
-  groups_.assign(whole.groups().begin(), whole.groups().end());
-  layers_.assign(whole.layers().begin(), whole.layers().end());
-  nets_.assign(whole.nets().begin(), whole.nets().end());
-  materials_.assign(whole.materials().begin(), whole.materials().end());
+  announce_as(whole);
+  blocks_.clear();
   for (mesh::ElementGroup& group : groups_) group.num_elements = 0;
   const auto parts = whole.blocks();
   for (std::size_t i = 0; i < parts.size(); ++i) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <tuple>
 
@@ -30,16 +31,6 @@ constexpr int dimension_of_block(const CellBlock&) {
 }
 constexpr int dimension_of_block(const FaceBlock&) {
   return 2;
-}
-
-/// Smallest box round nodes; all zero if there were none.
-void extend(Extent& extent, bool& is_empty, const std::array<double, 3>& node) {
-  if (is_empty) extent = {node, node};
-  is_empty = false;
-  for (std::size_t i = 0; i < 3; ++i) {
-    extent.min[i] = std::min(extent.min[i], node[i]);
-    extent.max[i] = std::max(extent.max[i], node[i]);
-  }
 }
 
 }  // namespace
@@ -114,28 +105,36 @@ void MeshDataSource::add_groups(int dimension) {
   spelt = group_names(spelt);
   std::size_t next_name = 0;
   for (const auto& [tag, given] : names) {
-    ElementGroup group{.dimension = dimension, .tag = tag, .name = spelt[next_name++], .extent = {}};
+    ElementGroup group{.dimension = dimension, .tag = tag, .name = spelt[next_name++]};
     const auto index = static_cast<std::int32_t>(groups_.size());
-    bool is_empty = true;
     while (run < runs_.size() && runs_[run].tag == tag) {
       const ElementKind kind = runs_[run].kind;
       std::int64_t count = 0;
-      for (; run < runs_.size() && runs_[run].tag == tag && runs_[run].kind == kind; ++run) {
-        const Run& r = runs_[run];
-        count += r.count;
-        const auto width = static_cast<std::size_t>(corners_of(kind));
-        const auto& corners = dimension == 3 ? mesh_.cells[static_cast<std::size_t>(r.block)].corners
-                                             : mesh_.faces[static_cast<std::size_t>(r.block)].corners;
-        const auto used =
-            std::span(corners).subspan(static_cast<std::size_t>(r.first) * width, static_cast<std::size_t>(r.count) * width);
-        for (const std::int64_t node : used) extend(group.extent, is_empty, mesh_.nodes[static_cast<std::size_t>(node)]);
-      }
+      for (; run < runs_.size() && runs_[run].tag == tag && runs_[run].kind == kind; ++run) count += runs_[run].count;
       blocks_.push_back({kind, index, tag, count});
       first_run_.push_back(run);
       group.num_elements += count;
     }
     groups_.push_back(std::move(group));
   }
+}
+
+Extent MeshDataSource::extent_of(std::size_t group) {
+  std::optional<Extent> extent;
+  for (std::size_t block = 0; block < blocks_.size(); ++block) {
+    if (static_cast<std::size_t>(blocks_[block].group) != group) continue;
+    visit(block, [&](std::span<const std::int64_t> nodes) {
+      for (const std::int64_t node : nodes) {
+        const std::array<double, 3>& at = mesh_.nodes[static_cast<std::size_t>(node)];
+        if (!extent) extent = {at, at};
+        for (std::size_t i = 0; i < 3; ++i) {
+          extent->min[i] = std::min(extent->min[i], at[i]);
+          extent->max[i] = std::max(extent->max[i], at[i]);
+        }
+      }
+    });
+  }
+  return extent.value_or(Extent{});
 }
 
 void MeshDataSource::fill_nodes(std::int64_t first, std::span<std::array<double, 3>> out) {

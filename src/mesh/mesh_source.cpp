@@ -23,6 +23,16 @@ std::int64_t MeshSource::num_elements(int dimension) const {
   return sum;
 }
 
+void MeshSource::announce_as(const MeshSource& source) {
+  groups_ = source.groups_;
+  blocks_ = source.blocks_;
+  layers_ = source.layers_;
+  nets_ = source.nets_;
+  materials_ = source.materials_;
+  num_nodes_ = source.num_nodes_;
+  unit_m_ = source.unit_m_;
+}
+
 void MeshSource::visit_field(std::size_t, CellField, const VisitValues&) {
   report_bug("the source has the field", __FILE__, __LINE__);
 }

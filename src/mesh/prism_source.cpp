@@ -24,24 +24,6 @@ std::size_t index(std::int32_t i) {
   return static_cast<std::size_t>(i);
 }
 
-/// Extent that grows; turns into all zeros if it never did.
-class GrowingExtent {
- public:
-  void add(std::span<const double, 2> min, std::span<const double, 2> max, double z_min, double z_max) {
-    for (std::size_t i = 0; i < 2; ++i) {
-      extent_.min[i] = std::min(extent_.min[i], min[i]);
-      extent_.max[i] = std::max(extent_.max[i], max[i]);
-    }
-    extent_.min[2] = std::min(extent_.min[2], z_min);
-    extent_.max[2] = std::max(extent_.max[2], z_max);
-  }
-  [[nodiscard]] Extent value() const { return extent_.max[2] < extent_.min[2] ? Extent{} : extent_; }
-
- private:
-  static constexpr double far = std::numeric_limits<double>::infinity();
-  Extent extent_{{far, far, far}, {-far, -far, -far}};
-};
-
 template <class Items>
 auto items_with_tag(const Items& items, std::int32_t tag_index) {
   return std::ranges::equal_range(items, tag_index, {}, [](const auto& item) { return item.tag; });
@@ -94,31 +76,19 @@ std::int32_t PrismSource::tag_index_of(const ElementBlock& block) const {
 }
 
 void PrismSource::survey_faces() {
-  const auto points = mesh_.planar().points_m();
-  const auto z = mesh_.plan().z_m();
   std::vector<std::string> names;
   for (const FaceTag& tag : mesh_.face_tags()) names.push_back(tag.name);
   names = group_names(names);
   for (std::size_t i = 0; i < names.size(); ++i) {
     const FaceTag& tag = mesh_.face_tags()[i];
-    const auto tag_index = static_cast<std::int32_t>(i);
-    GrowingExtent extent;
-    std::int64_t num_triangles = 0, num_quads = 0;
-    for (const Cap& cap : items_with_tag(mesh_.caps(), tag_index)) {
-      ++num_triangles;
-      for (std::int32_t v : mesh_.planar().triangles()[index(cap.triangle)])
-        extent.add(points[index(v)], points[index(v)], z[index(cap.level)], z[index(cap.level)]);
-    }
-    for (const Wall& wall : items_with_tag(mesh_.walls(), tag_index)) {
-      const std::int32_t low = mesh_.plan().first_sublayer(wall.slab), high = mesh_.plan().first_sublayer(wall.slab + 1);
-      num_quads += high - low;
-      for (std::int32_t v : {wall.a, wall.b}) extent.add(points[index(v)], points[index(v)], z[index(low)], z[index(high)]);
-    }
-    const auto group = static_cast<std::int32_t>(groups_.size());
+    const auto tag_index = static_cast<std::int32_t>(i), group = static_cast<std::int32_t>(groups_.size());
+    const auto num_triangles = static_cast<std::int64_t>(items_with_tag(mesh_.caps(), tag_index).size());
+    std::int64_t num_quads = 0;
+    for (const Wall& wall : items_with_tag(mesh_.walls(), tag_index))
+      num_quads += mesh_.plan().first_sublayer(wall.slab + 1) - mesh_.plan().first_sublayer(wall.slab);
     groups_.push_back({.dimension = 2,
                        .tag = tag.id,
                        .name = names[i],
-                       .extent = extent.value(),
                        .num_elements = num_triangles + num_quads,
                        .net = tag.net,
                        .is_inner = tag.is_inner});
@@ -127,55 +97,83 @@ void PrismSource::survey_faces() {
   }
 }
 
+template <class Visit>
+void PrismSource::visit_columns(Visit&& visit) const {
+  for (std::int32_t slab = 0; slab < mesh_.plan().num_slabs(); ++slab)
+    for (std::size_t region = 0; region < any_triangle_.size(); ++region) {
+      const std::int32_t triangle = any_triangle_[region], tag = triangle < 0 ? -1 : mesh_.tag_of(slab, triangle);
+      if (tag >= 0) visit(slab, region, tag);
+    }
+}
+
 void PrismSource::survey_volumes() {
   const PlanarMesh& planar = mesh_.planar();
-  const LayerPlan& plan = mesh_.plan();
-  constexpr double far = std::numeric_limits<double>::infinity();
-  struct Region {
-    std::array<double, 2> min{far, far}, max{-far, -far};
-    std::int32_t triangle = -1;  ///< any of its triangles: all share the region's tags
-  };
-  std::vector<Region> regions(index(planar.num_regions()));
-  for (std::int32_t t = 0; t < planar.num_triangles(); ++t) {
-    Region& region = regions[index(planar.regions()[index(t)])];
-    region.triangle = t;
-    for (std::int32_t v : planar.triangles()[index(t)]) {
-      const auto& point = planar.points_m()[index(v)];
-      for (std::size_t i = 0; i < 2; ++i) {
-        region.min[i] = std::min(region.min[i], point[i]);
-        region.max[i] = std::max(region.max[i], point[i]);
-      }
-    }
-  }
-  const std::size_t num_tags = mesh_.volume_tags().size();
-  std::vector<GrowingExtent> extents(num_tags);
-  slabs_of_tag_.resize(num_tags);
-  for (std::int32_t slab = 0; slab < plan.num_slabs(); ++slab) {
-    const double bottom = plan.z_m()[index(plan.first_sublayer(slab))], top = plan.z_m()[index(plan.first_sublayer(slab + 1))];
-    for (const Region& region : regions) {
-      const std::int32_t tag = region.triangle < 0 ? -1 : mesh_.tag_of(slab, region.triangle);
-      if (tag < 0) continue;
-      extents[index(tag)].add(region.min, region.max, bottom, top);
-      std::vector<std::int32_t>& slabs = slabs_of_tag_[index(tag)];
-      if (slabs.empty() || slabs.back() != slab) slabs.push_back(slab);
-    }
-  }
+  any_triangle_.assign(index(planar.num_regions()), -1);
+  for (std::int32_t t = 0; t < planar.num_triangles(); ++t) any_triangle_[index(planar.regions()[index(t)])] = t;
+  slabs_of_tag_.resize(mesh_.volume_tags().size());
+  visit_columns([&](std::int32_t slab, std::size_t, std::int32_t tag) {
+    std::vector<std::int32_t>& slabs = slabs_of_tag_[index(tag)];
+    if (slabs.empty() || slabs.back() != slab) slabs.push_back(slab);
+  });
   std::vector<std::string> names;
   for (const VolumeTag& tag : mesh_.volume_tags()) names.push_back(tag.name);
   names = group_names(names);
-  for (std::size_t i = 0; i < num_tags; ++i) {
+  for (std::size_t i = 0; i < names.size(); ++i) {
     const VolumeTag& tag = mesh_.volume_tags()[i];
     const auto group = static_cast<std::int32_t>(groups_.size());
     groups_.push_back({.dimension = 3,
                        .tag = tag.id,
                        .name = names[i],
-                       .extent = extents[i].value(),
                        .num_elements = tag.num_prisms,
                        .layer = tag.layer,
                        .material = tag.material,
                        .net = tag.net});
     if (tag.num_prisms > 0) blocks_.push_back({ElementKind::wedge, group, tag.id, tag.num_prisms});
   }
+}
+
+void PrismSource::survey_volume_boxes() {
+  const PlanarMesh& planar = mesh_.planar();
+  std::vector<Box> of_region(any_triangle_.size());
+  for (std::int32_t t = 0; t < planar.num_triangles(); ++t)
+    for (const std::int32_t v : planar.triangles()[index(t)])
+      of_region[index(planar.regions()[index(t)])].add(planar.points_m()[index(v)]);
+  volume_boxes_.assign(mesh_.volume_tags().size(), {});
+  visit_columns([&](std::int32_t, std::size_t region, std::int32_t tag) {
+    volume_boxes_[index(tag)].add(of_region[region].min);
+    volume_boxes_[index(tag)].add(of_region[region].max);
+  });
+}
+
+Extent PrismSource::extent_of(std::size_t group) {
+  const auto points = mesh_.planar().points_m();
+  const auto triangles = mesh_.planar().triangles();
+  const LayerPlan& plan = mesh_.plan();
+  Box box;
+  std::int32_t lowest = plan.num_sublayers() + 1, highest = -1;  // levels
+  const auto add_levels = [&](std::int32_t low, std::int32_t high) {
+    lowest = std::min(lowest, low);
+    highest = std::max(highest, high);
+  };
+  const std::size_t num_faces = mesh_.face_tags().size();
+  if (group < num_faces) {
+    for (const Cap& cap : items_with_tag(mesh_.caps(), static_cast<std::int32_t>(group))) {
+      for (const std::int32_t v : triangles[index(cap.triangle)]) box.add(points[index(v)]);
+      add_levels(cap.level, cap.level);
+    }
+    for (const Wall& wall : items_with_tag(mesh_.walls(), static_cast<std::int32_t>(group))) {
+      box.add(points[index(wall.a)]);
+      box.add(points[index(wall.b)]);
+      add_levels(plan.first_sublayer(wall.slab), plan.first_sublayer(wall.slab + 1));
+    }
+  } else {
+    if (volume_boxes_.empty()) survey_volume_boxes();
+    box = volume_boxes_[group - num_faces];
+    for (const std::int32_t slab : slabs_of_tag_[group - num_faces])
+      add_levels(plan.first_sublayer(slab), plan.first_sublayer(slab + 1));
+  }
+  if (highest < 0) return {};
+  return {{box.min[0], box.min[1], plan.z_m()[index(lowest)]}, {box.max[0], box.max[1], plan.z_m()[index(highest)]}};
 }
 
 void PrismSource::visit(std::size_t block, const VisitNodes& visit) {
@@ -302,12 +300,16 @@ void PrismSource::visit_field(std::size_t block, CellField field, const VisitVal
   std::vector<PrismBase> shapes;
   visit_pieces(tag_index_of(blocks_[block]), [&](std::int32_t slab, std::span<const std::int32_t> few) {
     values.resize(few.size());
+    const auto ahead = [&](std::size_t i) { return index(few[std::min(i + triangles_ahead, few.size() - 1)]); };
     if (field == CellField::region)
-      std::ranges::transform(few, values.begin(), [&](std::int32_t t) { return planar.regions()[index(t)]; });
+      for (std::size_t i = 0; i < few.size(); ++i) {
+        prefetch(&planar.regions()[ahead(i)]);
+        values[i] = planar.regions()[index(few[i])];
+      }
     shapes.resize(few.size());
     if (field == CellField::quality)
       for (std::size_t i = 0; i < few.size(); ++i) {
-        prefetch(&shapes_[index(few[std::min(i + triangles_ahead, few.size() - 1)])]);
+        prefetch(&shapes_[ahead(i)]);
         shapes[i] = shapes_[index(few[i])];
       }
     double last_height = -1;

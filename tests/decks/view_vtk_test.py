@@ -11,7 +11,7 @@ from program import ROOT, SKIPPED, run, run_json
 try:
     import vtk
 except ImportError:
-    print("skipped: python3-vtk9 is not installed")
+    print("skipped: python3-paraview is not installed")
     sys.exit(SKIPPED)
 
 

@@ -23,12 +23,8 @@ namespace {
 class Spoiled final : public mesh::MeshSource {
  public:
   using Spoil = std::function<void(std::size_t block, std::vector<std::int64_t>& nodes)>;
-  Spoiled(mesh::MeshSource& source, Spoil spoil) : source_(source), spoil_(std::move(spoil)) {
-    groups_.assign(source.groups().begin(), source.groups().end());
-    blocks_.assign(source.blocks().begin(), source.blocks().end());
-    num_nodes_ = source.num_nodes();
-    unit_m_ = source.unit_m();
-  }
+  Spoiled(mesh::MeshSource& source, Spoil spoil) : source_(source), spoil_(std::move(spoil)) { announce_as(source); }
+  [[nodiscard]] mesh::Extent extent_of(std::size_t group) override { return source_.extent_of(group); }
   [[nodiscard]] bool has_tagged_hull() const override { return true; }
   void fill_nodes(std::int64_t first, std::span<std::array<double, 3>> out) override { source_.fill_nodes(first, out); }
   void visit(std::size_t block, const VisitNodes& visit) override {
@@ -131,13 +127,13 @@ class RegularBlock final : public mesh::MeshSource {
         }
       }
     }
-    groups_ = {{.dimension = 2, .tag = 1, .name = "hull", .extent = {}},
-               {.dimension = 3, .tag = 1, .name = "block", .extent = {}}};
+    groups_ = {{.dimension = 2, .tag = 1, .name = "hull"}, {.dimension = 3, .tag = 1, .name = "block"}};
     blocks_ = {{mesh::ElementKind::triangle, 0, 1, static_cast<std::int64_t>(rows[0].size() / 3)},
                {mesh::ElementKind::quadrangle, 0, 1, static_cast<std::int64_t>(rows[1].size() / 4)},
                {mesh::ElementKind::wedge, 1, 1, static_cast<std::int64_t>(rows[2].size() / 6)}};
   }
   void fill_nodes(std::int64_t, std::span<std::array<double, 3>>) override {}
+  [[nodiscard]] mesh::Extent extent_of(std::size_t) override { return {}; }
   void visit(std::size_t block, const VisitNodes& visit) override {
     const auto width = static_cast<std::size_t>(mesh::nodes_of(blocks_[block].kind));
     for (std::span<const std::int64_t> rest = rows[block]; !rest.empty();) {

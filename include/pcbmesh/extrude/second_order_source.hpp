@@ -57,6 +57,7 @@ class SecondOrderSource final : public mesh::MeshSource {
 
   void fill_nodes(std::int64_t first, std::span<std::array<double, 3>> out) override;
   void visit(std::size_t block, const VisitNodes& visit) override;
+  [[nodiscard]] mesh::Extent extent_of(std::size_t group) override;
   [[nodiscard]] bool has_field(mesh::CellField field) const override { return prisms_.has_field(field); }
   [[nodiscard]] bool has_tagged_hull() const override { return true; }
   void visit_field(std::size_t block, mesh::CellField field, const VisitValues& visit) override {
@@ -81,7 +82,7 @@ class SecondOrderSource final : public mesh::MeshSource {
   void make_sets();
   void curve_edges(const SecondOrderOptions& options);
   void number_nodes(bool with_face_nodes);
-  void announce_blocks();
+  void announce_kinds();
   [[nodiscard]] std::int32_t edge_between(std::int32_t a, std::int32_t b) const;
   [[nodiscard]] Corner corner_of(std::int64_t node);
   [[nodiscard]] std::int64_t on_edge(std::int32_t level, std::int32_t edge) const;

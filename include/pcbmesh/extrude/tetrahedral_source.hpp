@@ -29,6 +29,7 @@ class TetrahedralSource final : public mesh::MeshSource {
 
   void fill_nodes(std::int64_t first, std::span<std::array<double, 3>> out) override { whole_.fill_nodes(first, out); }
   void visit(std::size_t block, const VisitNodes& visit) override;
+  [[nodiscard]] mesh::Extent extent_of(std::size_t group) override { return whole_.extent_of(group); }
   [[nodiscard]] bool has_field(mesh::CellField field) const override { return whole_.has_field(field); }
   [[nodiscard]] bool has_tagged_hull() const override { return whole_.has_tagged_hull(); }
   void visit_field(std::size_t block, mesh::CellField field, const VisitValues& visit) override;

@@ -29,6 +29,7 @@ class MeshDataSource final : public MeshSource {
 
   void fill_nodes(std::int64_t first, std::span<std::array<double, 3>> out) override;
   void visit(std::size_t block, const VisitNodes& visit) override;
+  [[nodiscard]] Extent extent_of(std::size_t group) override;
 
   /// Cells that carried no tag.
   [[nodiscard]] std::int64_t num_untagged_cells() const { return num_untagged_cells_; }

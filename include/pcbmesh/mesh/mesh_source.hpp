@@ -49,7 +49,6 @@ enum class ElementKind : std::uint8_t {
 /// "wedge", "triangle6" ...
 [[nodiscard]] std::string_view name_of(ElementKind kind);
 
-/// All zero if nothing carries the tag.
 struct Extent {
   std::array<double, 3> min{};
   std::array<double, 3> max{};
@@ -60,7 +59,6 @@ struct ElementGroup {
   int dimension = 3;
   std::int32_t tag = 0;  ///< positive; volumes and faces have number spaces of their own
   std::string name;      ///< as group_names() spells it: unique within its dimension, at most 127 bytes
-  Extent extent;         ///< in the source's unit
   std::int64_t num_elements = 0;
   std::int32_t layer = -1;     ///< index into layers(), volumes only
   std::int32_t material = -1;  ///< index into materials(), volumes only
@@ -119,6 +117,10 @@ class MeshSource {
   /// Node ids (from 0) of a block's elements, nodes_of(kind) each, at most `chunk` elements a call, in file order.
   virtual void visit(std::size_t block, const VisitNodes& visit) = 0;
   [[nodiscard]] virtual bool has_field(CellField) const { return false; }
+  /// Box around all nodes of a group, in the source's unit; all zero if the group is empty. Elements of second order may make
+  /// it wider than it need be, never narrower. @cost about one look at the group's elements: only formats that state it should
+  /// ask.
+  [[nodiscard]] virtual Extent extent_of(std::size_t group) = 0;
   /// One value per element of a block of cells, in the order of visit(). REQUIRES has_field().
   virtual void visit_field(std::size_t block, CellField field, const VisitValues& visit);
   /// The implicit mesh behind the source whose prisms, unaltered, are its cells; null for any other source.
@@ -131,6 +133,8 @@ class MeshSource {
 
  protected:
   MeshSource() = default;
+  /// Groups, blocks, names and numbers of another source, for one that hands its elements on in another shape.
+  void announce_as(const MeshSource& source);
   std::vector<ElementGroup> groups_;
   std::vector<ElementBlock> blocks_;
   std::vector<std::string> layers_, nets_;

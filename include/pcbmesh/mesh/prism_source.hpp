@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -28,6 +30,7 @@ class PrismSource final : public MeshSource {
 
   void fill_nodes(std::int64_t first, std::span<std::array<double, 3>> out) override { mesh_.fill_nodes(first, out); }
   void visit(std::size_t block, const VisitNodes& visit) override;
+  [[nodiscard]] Extent extent_of(std::size_t group) override;
   [[nodiscard]] bool has_field(CellField field) const override { return field != CellField::quality || quality_ != nullptr; }
   void visit_field(std::size_t block, CellField field, const VisitValues& visit) override;
   [[nodiscard]] const PrismMesh* prisms() const override { return &mesh_; }
@@ -44,10 +47,25 @@ class PrismSource final : public MeshSource {
     std::uint64_t last_use = 0;
     std::vector<std::int32_t> ranks;
   };
+  /// Grows from nothing.
+  struct Box {
+    std::array<double, 2> min{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+    std::array<double, 2> max{-min[0], -min[1]};
+    void add(const std::array<double, 2>& point) {
+      for (std::size_t i = 0; i < 2; ++i) {
+        min[i] = std::min(min[i], point[i]);
+        max[i] = std::max(max[i], point[i]);
+      }
+    }
+  };
   class Rows;
   void survey_volumes();
   void survey_faces();
   void survey_shapes();
+  void survey_volume_boxes();
+  /// Calls visit(slab, region, volume tag) for everything that is there, from the bottom.
+  template <class Visit>
+  void visit_columns(Visit&& visit) const;
   /// Index into face_tags or volume_tags of a block.
   [[nodiscard]] std::int32_t tag_index_of(const ElementBlock& block) const;
   void visit_caps(std::int32_t tag_index, Rows& rows);
@@ -66,6 +84,8 @@ class PrismSource final : public MeshSource {
   PrismMesh mesh_;
   PrismQuality quality_;
   std::vector<std::vector<std::int32_t>> slabs_of_tag_;
+  std::vector<std::int32_t> any_triangle_;  ///< by region, all of whose triangles share its tags; -1 = has none
+  std::vector<Box> volume_boxes_;           ///< by volume tag, once an extent is asked for
   std::vector<SlabGroups> cache_;
   std::array<LevelRanks, 3> level_ranks_;  ///< bottom, inside and top of the slab that is being written
   std::vector<PrismBase> shapes_;          ///< by triangle, once the quality is asked for

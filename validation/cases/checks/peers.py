@@ -12,7 +12,7 @@ import tempfile
 HERE = pathlib.Path(__file__).resolve().parent
 PETSC_DIR = os.environ.get("PETSC_DIR", "/usr/lib/petscdir/petsc-real" if pathlib.Path("/usr/lib/petscdir/petsc-real").exists() else
                            next((str(path) for path in sorted(pathlib.Path("/usr/lib/petscdir").glob("petsc*/x86_64*-real"))), "/usr/lib/petsc"))
-HOW_TO_INSTALL = {"gmsh -check": "gmsh", "VTK": "python3-vtk9", "PETSc": "python3-petsc4py", "OpenFOAM": "openfoam"}
+HOW_TO_INSTALL = {"gmsh -check": "gmsh", "VTK": "python3-paraview", "PETSc": "python3-petsc4py", "OpenFOAM": "openfoam"}
 
 
 def run(command, **options):
