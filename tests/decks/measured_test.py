@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """validation/cases/measured: what a laboratory does with S-parameters, done to networks whose answer is known. No board, no solver."""
+import importlib.machinery
+import importlib.util
 import os
 import pathlib
 import sys
@@ -17,6 +19,10 @@ sys.path.insert(0, str(ROOT / "validation/cases/measured"))
 sys.dont_write_bytecode = True
 import networks  # noqa: E402
 import structures  # noqa: E402
+
+loader = importlib.machinery.SourceFileLoader("run", str(ROOT / "validation/cases/measured/run"))
+run = importlib.util.module_from_spec(importlib.util.spec_from_loader("run", loader))
+loader.exec_module(run)
 
 HZ = numpy.array([2e8, 2e9, 4e9, 6e9])
 OMEGA = 2 * numpy.pi * HZ
@@ -124,6 +130,29 @@ class Measured(unittest.TestCase):
         assert '(31 "B.Cu" signal)' in text and '(pad "3"' in text and "via" in text and text.count("segment") == 1 and text.count("zone") == 1, text
         assert structures.entry(structures.cut_below(board, '"In2.Cu"'), "zone") is not None
         assert '"d2"' in structures.written(structures.cut_below(board, '"In2.Cu"'))
+
+    def test_curves_say_where_the_analyser_was_calibrated(self):
+        """What docs/evidence/measured.md concludes from the published curves alone."""
+        if not (structures.DATA / "gerber/gerber2ems_stub_short/vna.csv").exists():
+            self.skipTest("no measured curves in PCBMESH_TEST_DATA")
+        hz, stub = run.measured("stub")
+        _, meander = run.measured("meander")
+        self.assertEqual((1000, 2e8, 6e9), (len(hz), hz[0], hz[-1]))
+        seconds = numpy.linspace(-0.3e-9, 0.6e-9, 901)
+        step = networks.step_response(hz, stub, 0.0, seconds)
+        self.assertLess(numpy.max(abs(step[seconds < -0.02e-9] - step[0])), 0.005, "no connector before the reference plane")
+        equal(run.dip(seconds, step, 0, 0.4e-9), 0.14e-9, 0.01e-9, "dip of the stub")
+        early = networks.step_response(hz, meander, 1.0, seconds)
+        self.assertLess(numpy.min(early[seconds < 0]), -0.2, "the meander's connector lies before the reference plane")
+        self.assertLess(numpy.max(abs(meander[hz < 2.5e9])), 1.0)
+        self.assertGreater(numpy.max(abs(meander)), 1.05, "an open line above 1: the standards were not ideal")
+
+    def test_bounds_are_judged_by_what_the_curves_show(self):
+        seconds = numpy.linspace(-0.5e-9, 1.5e-9, 2001)
+        hz = numpy.linspace(2e8, 6e9, 1001)
+        open_line = networks.step_response(hz, numpy.exp(-2j * numpy.pi * hz * 0.42e-9), 1.0, seconds)
+        equal(run.crossing(seconds, open_line, 0.5, 0.1e-9), 0.42e-9, 0.0042e-9, "open end")  # one per cent: below 0.2 GHz nothing was measured, and a chord is no arc
+        self.assertEqual(0.5, run.rms(numpy.array([0.3, 0.4j, 9]) * 2 ** 0.5, numpy.array([True, True, False])))
 
 
 if __name__ == "__main__":
