@@ -10,6 +10,7 @@
 
 #include "formats/deck/deck_file.hpp"
 #include "formats/deck/limits.hpp"
+#include "formats/palace/tables.hpp"
 
 namespace pcbmesh::formats::palace {
 namespace {
@@ -20,15 +21,19 @@ using mesh::BoundaryCondition;
 constexpr double hz_per_ghz = 1e9;
 constexpr int element_order = 2;
 
-constexpr deck::Limits limits{.solver = "Palace",
-                              .solid_copper = false,
-                              .wave_ports = true,
-                              .coaxial_ports = true,
-                              .lossy_resonances = true,
-                              .floating_skins = true};
+constexpr deck::Limits limits{
+    .solver = "Palace", .solid_copper = false, .wave_ports = true, .coaxial_ports = true, .lossy_resonances = true};
 
 deck::FieldProblem state(const mesh::PrismMesh& mesh, const DeckOptions& options, Diagnostics& diagnostics) {
   deck::FieldProblem problem = deck::state_within(limits, mesh, options, 0, diagnostics);
+  std::string waves;
+  for (const deck::FieldPort& port : problem.ports)
+    if (port.port.kind == mesh::PortKind::wave) waves += (waves.empty() ? "" : ", ") + port.port.name;
+  if (!waves.empty() && options.problem == Problem::driven)
+    diagnostics.note("deck.wave_port_impedance",
+                     "S-parameters of wave ports refer to the impedance of their own mode, which changes with frequency; the "
+                     "Touchstone file can only state the impedance of the study: " +
+                         waves);
   for (const deck::FieldPort& port : problem.ports)
     if (port.port.kind == mesh::PortKind::wave)
       for (const deck::Face& face : problem.faces)
@@ -162,9 +167,21 @@ Deck write(const mesh::PrismMesh& mesh, const DeckOptions& options, const std::f
   out["Solver"] = solver(options);
   Deck deck;
   deck::put_file(folder / (stem + ".palace.json"), out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n", deck);
-  deck::put_run_script(folder / (stem + ".run.sh"), "Solves with Palace. NP: number of processes.",
-                       fmt::format("palace -np \"${{NP:-2}}\" {}\n", deck::shell_word(stem + ".palace.json")), deck);
-  deck.result = "postpro/" + stem;
+  const deck::ResultFiles results = deck::result_files(problem);
+  const std::string config = deck::shell_word(stem + ".palace.json");
+  deck::put_run_script(
+      folder / (stem + ".run.sh"),
+      fmt::format(
+          "Solves {} with Palace and ends in {}. PALACE: its launcher; NP: number of processes; ORDER: of the elements, "
+          "{} unless said; PCBMESH: where that is.",
+          deck::plain(options.mesh), deck::plain(results.final), element_order),
+      fmt::format("deck={0}\nif [ -n \"${{ORDER:-}}\" ]; then\n  deck={1}\n  sed \"/\\\"Solver\\\"/,\\$ s/\\\"Order\\\": "
+                  "[0-9]*/\\\"Order\\\": $ORDER/\" {0} > \"$deck\"\nfi\n\"${{PALACE:-palace}}\" -np \"${{NP:-2}}\" "
+                  "\"$deck\"\n{2}",
+                  config, deck::shell_word(stem + ".order.palace.json"), table_script(problem, "postpro/" + stem)),
+      deck);
+  deck.result = results.final;
+  deck.calls_pcbmesh = options.problem == Problem::driven;
   return deck;
 }
 
