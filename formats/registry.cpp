@@ -200,6 +200,14 @@ void write_mesh(mesh::MeshSource& source, const std::filesystem::path& file, con
   }
 }
 
+std::vector<std::filesystem::path> parts_of_mesh(const std::filesystem::path& file, std::string_view format) {
+  const MeshFormat* const found = find_mesh_format(file, format);
+  if (found == nullptr || found->parts == nullptr) return {};
+  std::vector<std::filesystem::path> parts = found->parts(file);
+  std::erase_if(parts, [](const std::filesystem::path& part) { return !std::filesystem::exists(part); });
+  return parts;
+}
+
 mesh::MeshData read_mesh(const std::filesystem::path& file, std::string_view format, const Progress& progress) {
   progress.check();
   // Folders of Elmer have names of their own.

@@ -63,6 +63,17 @@ void compare_file(const Certificate& certificate, const char* role, const std::f
                                                             file.filename().string(), role, names, now.sha256)));
 }
 
+void compare_part(const Certificate::File& known, const std::filesystem::path& file, std::vector<Finding>& findings) {
+  if (!std::filesystem::exists(file)) {
+    findings.push_back(
+        finding_of("certificate.file_differs", fmt::format("{}, a part of {}, is not beside it", known.name, known.of)));
+  } else if (const Certificate::File now = certified_file(known.role, file); now.sha256 != known.sha256) {
+    findings.push_back(finding_of(
+        "certificate.file_differs",
+        fmt::format("{}, a part of {}, is not the one of the certificate: SHA-256 {}", known.name, known.of, now.sha256)));
+  }
+}
+
 void compare_checks(const Certificate& certificate, const Report& report, std::vector<Finding>& findings) {
   for (const Certificate::Check& known : certificate.checks) {
     const auto run = std::ranges::find(report.checks, known.name, &CheckRun::name);
@@ -140,7 +151,10 @@ std::string to_json(const Certificate& certificate) {
       certificate.findings, [](const Certificate::Problem& problem) { return problem.severity == FindingSeverity::error; });
   out["files"] = Json::array();
   for (const auto& file : certificate.files)
-    out["files"].push_back({{"role", file.role}, {"name", file.name}, {"sha256", file.sha256}});
+    out["files"].push_back({{"role", file.role},
+                            {"name", file.name},
+                            {"sha256", file.sha256},
+                            {"of", file.of.empty() ? Json(nullptr) : Json(file.of)}});
   out["checks"] = Json::array();
   for (const auto& check : certificate.checks)
     out["checks"].push_back({{"name", check.name}, {"num_examined", check.num_examined}, {"num_found", check.num_found}});
@@ -174,7 +188,7 @@ Certificate read_certificate(const std::string& file) {
   Certificate out;
   out.version = top["pcbmesh"].text();
   for (const Field& field : top["files"].list()) {
-    out.files.push_back({field["role"].text(), field["name"].text(), field["sha256"].text()});
+    out.files.push_back({field["role"].text(), field["name"].text(), field["sha256"].text(), field["of"].text_or_empty()});
     if (!is_sha256(out.files.back().sha256)) field["sha256"].fail("64 lower-case hexadecimal digits");
   }
   for (const Field& field : top["checks"].list()) {
@@ -198,6 +212,7 @@ void check_certificate(const Certificate& certificate, const std::filesystem::pa
     const std::filesystem::path file = mesh.parent_path() / known.name;
     const bool is_input = known.role == "board" || known.role == "study";
     if (is_input && std::filesystem::is_regular_file(file)) compare_file(certificate, known.role.c_str(), file, findings);
+    if (known.role == "part" && known.of == mesh.filename()) compare_part(known, file, findings);
   }
   compare_checks(certificate, report, findings);
   compare_volumes(certificate, report, unit_m, findings);

@@ -23,6 +23,10 @@ void write(mesh::MeshSource& source, const std::filesystem::path& file, const Wr
   write_vtu(piece, file, options, source.unit_m() / metres_per(options.unit), progress, &source);
 }
 
+std::vector<std::filesystem::path> parts(const std::filesystem::path& file) {
+  return {folder_of(file)};
+}
+
 }  // namespace
 
 constinit const MeshFormat mesh_format{
@@ -34,12 +38,14 @@ constinit const MeshFormat parallel_format{"pvtu",
                                            parallel_extensions,
                                            write_parallel,
                                            nullptr,
-                                           {.written = all_kinds, .readable = 0, .has_tags = true, .has_names = true}};
+                                           {.written = all_kinds, .readable = 0, .has_tags = true, .has_names = true},
+                                           parts};
 constinit const MeshFormat multiblock_format{"vtm",
                                              "VTK multiblock: one named block for each group",
                                              multiblock_extensions,
                                              write_multiblock,
                                              nullptr,
-                                             {.written = all_kinds, .readable = 0, .has_tags = true, .has_names = true}};
+                                             {.written = all_kinds, .readable = 0, .has_tags = true, .has_names = true},
+                                             parts};
 
 }  // namespace pcbmesh::formats::vtu

@@ -15,9 +15,7 @@
 #include "pcbmesh/base/error.hpp"
 
 namespace pcbmesh::formats::vtu {
-namespace {
 
-/// Folder "board_pvtu" beside "board.pvtu" for the files it lists.
 std::filesystem::path folder_of(const std::filesystem::path& file) {
   const std::string ending = file.extension().string();
   if (ending.empty())
@@ -27,6 +25,8 @@ std::filesystem::path folder_of(const std::filesystem::path& file) {
   folder += "_" + ending.substr(1);
   return folder;
 }
+
+namespace {
 
 /// As this file names them: "12.vtu", "volume_3.vtu", "face_3.vtu".
 bool is_piece(std::string_view name) {

@@ -7,6 +7,8 @@
 
 namespace pcbmesh::formats::vtu {
 
+/// Folder "board_pvtu" beside "board.pvtu" for the files it lists. @throws Error usage (101) for a name without ending.
+[[nodiscard]] std::filesystem::path folder_of(const std::filesystem::path& file);
 /// Parts of equal numbers of elements, in a folder named like the file without its ending, then the .pvtu itself.
 void write_parallel(mesh::MeshSource& source, const std::filesystem::path& file, const WriteMeshOptions& options,
                     const Progress& progress);

@@ -82,10 +82,22 @@ std::filesystem::path beside(const std::filesystem::path& file, std::string_view
   return out;
 }
 
+std::filesystem::path heavy_of(const std::filesystem::path& file) {
+  return beside(file, ".vtkhdf");
+}
+std::filesystem::path faces_of(const std::filesystem::path& file) {
+  return beside(file, "_faces" + file.extension().string());
+}
+std::filesystem::path mixed_of(const std::filesystem::path& file) {
+  return beside(file, "_paraview" + file.extension().string());
+}
+std::vector<std::filesystem::path> parts(const std::filesystem::path& file) {
+  return {heavy_of(file), faces_of(file), mixed_of(file)};
+}
+
 void write(mesh::MeshSource& source, const std::filesystem::path& file, const WriteMeshOptions& options,
            const Progress& progress) {
-  const std::string extension = file.extension().string();
-  const std::filesystem::path heavy_path = beside(file, ".vtkhdf");
+  const std::filesystem::path heavy_path = heavy_of(file);
   std::vector<std::unique_ptr<LightFile>> light;
   const auto write_light = [&](const HeavyFile& heavy) {
     const auto put_cells = [&](LightFile& out, bool for_vtk) {
@@ -95,11 +107,11 @@ void write(mesh::MeshSource& source, const std::filesystem::path& file, const Wr
       return *light.emplace_back(std::make_unique<LightFile>(name, heavy_path, heavy));
     };
     if (!heavy.faces.empty()) {
-      LightFile& faces = begin(beside(file, "_faces" + extension));
+      LightFile& faces = begin(faces_of(file));
       faces.put_grid("faces", heavy.faces.front());
       faces.save();
     }
-    LightFile& all = begin(beside(file, "_paraview" + extension));
+    LightFile& all = begin(mixed_of(file));
     all.begin_collection();
     put_cells(all, true);
     for (const HeavyGrid& grid : heavy.faces) all.put_grid("faces", grid);
@@ -121,6 +133,7 @@ void write(mesh::MeshSource& source, const std::filesystem::path& file, const Wr
 constinit const MeshFormat mesh_format{
     "xdmf",     "XDMF 3 over HDF5 (dolfinx, meshio, ParaView)",
     extensions, write,
-    read_xdmf,  {.written = all_kinds, .readable = all_kinds, .has_tags = true, .has_names = true}};
+    read_xdmf,  {.written = all_kinds, .readable = all_kinds, .has_tags = true, .has_names = true},
+    parts};
 
 }  // namespace pcbmesh::formats::xdmf

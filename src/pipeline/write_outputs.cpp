@@ -93,6 +93,7 @@ OutputResult write_outputs(const MeshBoardResult& result, const OutputOptions& o
   for (const std::filesystem::path& file : options.meshes) {
     formats::write_mesh(elements.source(), file, options.write, options.format, progress);
     out.files.push_back(file.string());
+    for (const std::filesystem::path& part : formats::parts_of_mesh(file, options.format)) out.files.push_back(part.string());
   }
   formats::tags_json::write_tags(result.mesh, tags, options.write.unit, options.write.one_number_space ? num_volumes : 0,
                                  &elements.source());
@@ -106,7 +107,13 @@ OutputResult write_outputs(const MeshBoardResult& result, const OutputOptions& o
   if (!options.board.empty()) certified.push_back(validation::certified_file("board", options.board));
   certified.push_back(validation::certified_file("study", study));
   certified.push_back(validation::certified_file("tags", tags));
-  for (const std::filesystem::path& file : options.meshes) certified.push_back(validation::certified_file("mesh", file));
+  for (const std::filesystem::path& file : options.meshes) {
+    certified.push_back(validation::certified_file("mesh", file));
+    for (const std::filesystem::path& part : formats::parts_of_mesh(file, options.format)) {
+      certified.push_back(validation::certified_file("part", part));
+      certified.back().of = file.filename().string();
+    }
+  }
   const std::filesystem::path certificate = file_beside(options.meshes.front(), ".certificate.json");
   write_text_file(certificate,
                   to_json(validation::certify(*out.report, expectation, expectation.unit_m, std::move(certified))));

@@ -214,6 +214,21 @@ class Reports(unittest.TestCase):
         self.assertEqual((again / "good.certificate.json").read_bytes(), certificate.read_bytes(), "another run, other threads, other folder")
         self.assertEqual(run("check", self.out / "good.msh", "--no-tags", "--certificate", certificate).returncode, 2)
 
+    def test_the_certificate_holds_the_parts_of_a_mesh(self):
+        done = run("mesh", ROOT / "examples/serpentine.json", "-o", self.out / "set.xdmf", "-o", self.out / "set.pvtu")
+        if "has no HDF5" in done.stderr:
+            self.skipTest("this build has no HDF5")
+        certificate = self.out / "set.certificate.json"
+        document = json.loads(certificate.read_text())
+        jsonschema.validate(document, json.loads((ROOT / "docs/schema/certificate.schema.json").read_text()))
+        parts = {file["name"]: file["of"] for file in document["files"] if file["role"] == "part"}
+        self.assertEqual(parts, {"set.vtkhdf": "set.xdmf", "set_faces.xdmf": "set.xdmf", "set_paraview.xdmf": "set.xdmf", "set_pvtu": "set.pvtu"})
+        self.assertLessEqual(set(parts), {line.split()[1].rsplit("/", 1)[-1] for line in done.stdout.splitlines() if line.startswith("  wrote")})
+        with open(self.out / "set_paraview.xdmf", "a") as file:
+            file.write("\n")
+        found = run("check", self.out / "set.xdmf", "--certificate", certificate, "--json")
+        self.assertIn("set_paraview.xdmf, a part of set.xdmf", found.stdout)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -114,6 +114,21 @@ class Solvers(InFolder):
                 self.assertIn(word, done.stderr, arguments)
             self.assertEqual([p.name for p in self.out.glob("x*")], [], arguments)
 
+    def test_copper_that_floats_without_a_body_is_refused(self):
+        """A skin or sheet without a net has no condition that any of these solvers knows: it would be as if it were not there."""
+        board = cases.board("b", [("top", 0.035), ("upper", 0.5, 4.0, 0.0), ("mid", 0.035), ("lower", 0.5, 4.0, 0.0), ("bottom", 0.035)], cases.rect(0, 0, 10, 5), ["A", "GND"],
+                            tracks=[{"layer": "mid", "width": 1, "points": [[2, 2], [8, 2]]}], planes=[{"layer": "top", "net": "A"}, {"layer": "bottom", "net": "GND"}])
+        file = self.out / "b.json"
+        file.write_text(json.dumps(board))
+        for solver in ("palace", "elmer", "getdp", "mfem", "dolfinx"):
+            for mode in ("hollow", "sheet"):
+                out = self.out / f"{solver}_{mode}"
+                done = run("mesh", file, "--air", "0", "--for", solver, "--problem", "electrostatic", "--conductors", mode, "-o", out)
+                self.assertEqual((done.returncode, "error 703" in done.stderr), (5, True), done.stderr)
+                for words in (f"{mode} copper without a net, '{'sheet' if mode == 'sheet' else 'surface'}|none', which floats", "solid copper"):
+                    self.assertIn(words, done.stderr)
+                self.assertEqual(list(out.glob("*")), [])
+
     def test_palace_elmer_mfem_and_dolfinx_hold_everything_of_the_study(self):
         board = cases.board("b", [("top", 0.035), ("core", 0.5, 4.1, 0.013), ("bottom", 0.035)], cases.rect(-2, -2, 12, 7), ["A", "GND"],
                             tracks=[{"layer": "top", "net": "A", "width": 1, "points": [[-1, 2], [11, 2]]}], planes=[{"layer": "bottom", "net": "GND"}])

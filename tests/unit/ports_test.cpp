@@ -447,6 +447,12 @@ TEST(PortSizes, T6_TwoElementsAcrossAndAlongOrWhatTheStudySays) {
   EXPECT_GE(measured[1].least_along, 2);
   EXPECT_GE(measured[1].least_across, 10);
   EXPECT_EQ(measured[1].num_faces, made.tag("port|G").num_triangles);
+  // A length that the study gives takes the place of the two along, not of those across.
+  study.ports[0].max_edge = mm;
+  made = meshed(layout, study);
+  EXPECT_EQ(sublayers(core), 1);
+  EXPECT_EQ(mesh::measure_ports(made.prisms)[0].least_along, 1);
+  EXPECT_GE(mesh::measure_ports(made.prisms)[0].least_across, 2);
   study.ports[0].max_edge = 100 * um;
   made = meshed(layout, study);
   EXPECT_LE(longest_edge_in(made, 0), 0.1e-3 * (1 + 1e-9));

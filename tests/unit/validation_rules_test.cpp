@@ -178,6 +178,33 @@ TEST(Certificate, HoldsForItsMeshAndForNoOther) {
   }
 }
 
+TEST(Certificate, HoldsThePartsOfItsMeshOnly) {
+  const testing::Folder folder;
+  const auto mesh_file = folder.path() / "a.xdmf", tags_file = folder.path() / "a.tags.json", part = folder.path() / "a.vtkhdf",
+             other = folder.path() / "b.vtkhdf";
+  for (const auto& file : {mesh_file, tags_file, part, other}) write_file(file, file.filename().string());
+  const Report report = Damage(Cells::prisms, 0).check();
+  std::vector<Certificate::File> files{certified_file("tags", tags_file), certified_file("mesh", mesh_file),
+                                       certified_file("part", part), certified_file("part", other)};
+  files[2].of = "a.xdmf";
+  files[3].of = "b.xdmf";
+  const std::string text = to_json(certify(report, {}, 1, files));
+  const Certificate read = read_certificate(write_file(folder.path() / "a.certificate.json", text));
+  EXPECT_EQ(to_json(read), text);
+  const auto passes = [&] {
+    Report now = report;
+    check_certificate(read, mesh_file, tags_file, 1, now);
+    return std::ranges::count(codes_of(now), std::string("certificate.file_differs")) == 0;
+  };
+  EXPECT_TRUE(passes());
+  write_file(other, "a part of another mesh");
+  EXPECT_TRUE(passes());
+  write_file(part, "other numbers");
+  EXPECT_FALSE(passes());
+  std::filesystem::remove(part);
+  EXPECT_FALSE(passes());
+}
+
 TEST(Certificate, SaysWhatIsWrongWithADamagedFile) {
   const testing::Folder folder;
   const std::string good = to_json(certify({}, {}, 1, {{"mesh", "a.msh", std::string(64, 'a')}}));

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "pcbmesh/base/diagnostics.hpp"
 #include "pcbmesh/base/progress.hpp"
@@ -87,6 +88,8 @@ struct MeshFormat {
                 const Progress& progress);
   mesh::MeshData (*read)(const std::filesystem::path& file, const Progress& progress);
   FormatScope scope{};
+  /// Files and folders that may stand beside `file` and belong to it; null = it stands alone.
+  std::vector<std::filesystem::path> (*parts)(const std::filesystem::path& file) = nullptr;
 };
 
 /// The tables: explicit, ordered, no registration at start-up.
@@ -109,6 +112,9 @@ void write_mesh(mesh::MeshSource& source, const std::filesystem::path& file, con
 /// The same for the prisms of an implicit mesh. Without a quality functor no cell array `quality` is written.
 void write_mesh(const mesh::PrismMesh& mesh, const std::filesystem::path& file, const WriteMeshOptions& options,
                 std::string_view format = {}, const Progress& progress = Progress{});
+
+/// Files and folders beside a mesh that was written which belong to it: the numbers of an XDMF, the parts of a PVTU.
+[[nodiscard]] std::vector<std::filesystem::path> parts_of_mesh(const std::filesystem::path& file, std::string_view format = {});
 
 /// Reads a mesh for check and convert. @throws Error file_unreadable (201), file_syntax (202), file_truncated (205).
 [[nodiscard]] mesh::MeshData read_mesh(const std::filesystem::path& file, std::string_view format = {},

@@ -14,9 +14,10 @@ namespace pcbmesh::validation {
 /// time nor path, so that the same run gives the same bytes.
 struct Certificate {
   struct File {
-    std::string role;    ///< board, study, tags or mesh
+    std::string role;    ///< board, study, tags, mesh, or part: a file or folder that belongs to a mesh beside it
     std::string name;    ///< without its folder
     std::string sha256;  ///< 64 lower-case hexadecimal digits
+    std::string of{};    ///< part: name of its mesh
   };
   struct Check {
     std::string name;
@@ -49,8 +50,8 @@ struct Certificate {
 [[nodiscard]] std::string to_json(const Certificate& certificate);
 /// @throws Error file_unreadable (201), file_syntax (202).
 [[nodiscard]] Certificate read_certificate(const std::string& file);
-/// Compares the mesh, its tags and its report with the certificate, board and study too if they lie beside the mesh; adds
-/// the check "certificate" to the report. @param tags  the tags.json of the report.
+/// Compares the mesh, its parts, its tags and its report with the certificate, board and study too if they lie beside the mesh;
+/// adds the check "certificate" to the report. @param tags  the tags.json of the report.
 /// @throws Error file_unreadable (201).
 void check_certificate(const Certificate& certificate, const std::filesystem::path& mesh, const std::filesystem::path& tags,
                        double unit_m, Report& report);

@@ -32,12 +32,12 @@ def port(name, net, side, ohm, reference="GND", **more):
 
 # ---- cavity -------------------------------------------------------------------------------------------------------
 
-def cavity(folder, edge_mm, size=(100, 90, 70), **run):
+def cavity(folder, edge_mm, size=(100, 90, 70), mode="solid", **run):
     """A box of vacuum between two solid planes, electric walls around."""
     made = board("cavity", [("top", 1.0), ("space", size[2], 1.0, 0.0), ("bottom", 1.0)], rect(0, 0, size[0], size[1]), ["LID", "GND"],
                  planes=[{"layer": "top", "net": "LID"}, {"layer": "bottom", "net": "GND"}])
     wanted = exact.cavity_hz([MM * s for s in size])
-    solved = solve(made, study("eigenmode", edge_mm, boundaries={"all": "pec"}, modes={"number": 4, "above": 0.95 * wanted[0]}), folder, **run)
+    solved = solve(made, study("eigenmode", edge_mm, boundaries={"all": "pec"}, conductors={"mode": mode, "surface": "pec"}, modes={"number": 4, "above": 0.95 * wanted[0]}), folder, **run)
     found = solved.resonances_hz()
     return solved, [(f, w) for f, w in zip(found, wanted)][:3]
 
@@ -66,13 +66,14 @@ def box_cavity(folder, n, size=(100, 90, 70), **run):
 
 # ---- lines --------------------------------------------------------------------------------------------------------
 
-def tem_line(folder, edge_mm, hz=3e9, tan_delta=0.0, ohm_factor=1.0, boundaries=None, eps_r=4.0, **run):
+def tem_line(folder, edge_mm, hz=3e9, tan_delta=0.0, ohm_factor=1.0, boundaries=None, eps_r=4.0, mode="solid", **run):
     """Parallel plates 20 mm wide with magnetic side walls, 10 mm apart, 100 mm long: TEM, known to every digit."""
     ohm = exact.ETA0 / math.sqrt(eps_r) / 2
     made = board("line", [("top", 1.0), ("core", 10.0, eps_r, tan_delta), ("bottom", 1.0)], rect(-10, -10, 110, 30), ["A", "GND"],
                  planes=[{"layer": "top", "net": "A"}, {"layer": "bottom", "net": "GND"}])
     ports = [port("p1", "A", "xmin", ohm * ohm_factor), port("p2", "A", "xmax", ohm * ohm_factor)]
-    solved = solve(made, study("driven", edge_mm, ports=ports, sweep=[hz], region=[0, 0, 100, 20], boundaries=boundaries, mesh={"height_policy": "none", "sublayers": "none"}), folder, **run)
+    solved = solve(made, study("driven", edge_mm, ports=ports, sweep=[hz], region=[0, 0, 100, 20], boundaries=boundaries, conductors={"mode": mode, "surface": "pec"},
+                               mesh={"height_policy": "none", "sublayers": "none"}), folder, **run)
     s = solved.touchstone()[0][1]
     k = 2 * math.pi * hz / exact.LIGHT * cmath.sqrt(eps_r * (1 - 1j * tan_delta))
     wanted = exact.line_s(ohm / cmath.sqrt(1 - 1j * tan_delta), 1j * k, 0.1, ohm * ohm_factor)
@@ -150,7 +151,7 @@ def coaxial_via(folder, edge_mm=0.3, at_copper_mm=0.05, drill=0.4, outer=2.0, he
     return solved, solved.capacitance()["SIG", "SIG"], per_eps * (4.0 * height + 0.1)
 
 
-def coaxial_line(folder, edge_mm=0.4, hz=3e9, height=10.0, drill=0.6, outer=2.0, eps_r=4.0, ohm_factor=1.0, copper=0.01):
+def coaxial_line(folder, edge_mm=0.4, hz=3e9, height=10.0, drill=0.6, outer=2.0, eps_r=4.0, ohm_factor=1.0, copper=0.01, **run):
     """A barrel in a round board with an electric wall about it: a coaxial line, a coaxial port in the antipad at each end."""
     ohm = exact.ETA0 / math.sqrt(eps_r) * math.log(outer / drill) / (2 * math.pi)
     antipad = 0.99 * outer
@@ -159,7 +160,7 @@ def coaxial_line(folder, edge_mm=0.4, hz=3e9, height=10.0, drill=0.6, outer=2.0,
     ports = [{"name": name, "net": "SIG", "at": {"point": [0, 0], "layer": layer}, "shape": "coaxial", "impedance": ohm * ohm_factor} for name, layer in (("p1", "top"), ("p2", "bottom"))]
     sides = {"all": "none", **{side: "pec" for side in ("xmin", "xmax", "ymin", "ymax", "side")}}
     solved = solve(made, study("driven", edge_mm, ports=ports, sweep=[hz], boundaries=sides, seed="delaunay", conductors={"mode": "hollow", "surface": "pec"},
-                               mesh={"height_policy": "none", "sublayers": "none", "elements_per_wavelength": 25, "tolerance": "1um"}, arcs={"sagitta": "5um"}), folder)
+                               mesh={"height_policy": "none", "sublayers": "none", "elements_per_wavelength": 25, "tolerance": "1um"}, arcs={"sagitta": "5um"}), folder, **run)
     s = solved.touchstone()[0][1]
     k = 2 * math.pi * hz / exact.LIGHT * math.sqrt(eps_r)
     return solved, s, exact.line_s(ohm, 1j * k, MM * height, ohm * ohm_factor)

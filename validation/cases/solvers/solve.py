@@ -67,7 +67,7 @@ class Solved:
 
     def resonances_hz(self):
         """Ascending."""
-        part = (self.folder / f"{self.name}.modes.txt").read_text().split("# stored")[0]
+        part = (self.folder / f"{self.name}.modes.txt").read_text().lstrip().split("\n# ")[0]
         rows = [line.split() for line in part.splitlines() if line and line[0] != "#"]
         return sorted(float(row[1]) for row in rows if len(row) > 1)
 
