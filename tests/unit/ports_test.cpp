@@ -550,6 +550,19 @@ TEST(WrongPorts, OnACutOutOfTheBoard) {
   }
 }
 
+TEST(WrongPorts, AHairFromTheSideOfTheDomain) {
+  Layout layout;
+  layout.plane(1).track(0, line, {0, -8 * mm}, {0, 8 * mm});
+  study::Study study = boxed({port("P", {0, 0})});
+  study.box = geometry::Box{{-4 * mm, -4 * mm}, {500 * um + 84, 4 * mm}};
+  expect_words(refusal(layout, study),
+               {"/ports/0: port 'P' at (0, 0) mm lies 84 nm from the side of the domain at (0.5, 0) mm"});
+  study.box->max.x = 500 * um;
+  EXPECT_EQ(refusal(layout, study), "") << "up to the side itself";
+  study.box->max.x = 502 * um;
+  EXPECT_EQ(refusal(layout, study), "");
+}
+
 /// What only the mesh can tell: copper of another net crosses the ring, so that faces are missing.
 TEST(WrongPorts, CopperInTheWayIsFoundInTheMesh) {
   Layout layout;
