@@ -23,4 +23,9 @@ struct ResultFiles {
 };
 [[nodiscard]] ResultFiles result_files(const FieldProblem& problem);
 
+/// The run script of such a solver: `body` writes the table, what follows makes of it what the command ends in.
+/// @param solver  its name, and where it comes from  @param environment  what the variables of the shell mean
+void put_run_script(const std::filesystem::path& folder, const FieldProblem& problem, std::string_view solver,
+                    std::string_view environment, std::string_view body, Deck& deck);
+
 }  // namespace pcbmesh::formats::deck

@@ -32,12 +32,12 @@ struct Found {
 class PortCheck {
  public:
   PortCheck(const mesh::PrismMeshParts& parts, const Columns& columns, const model::Model& model, const PortFootprints& ports,
-            const std::vector<SharedEdge>& edges)
+            const std::vector<mesh::PlanarEdge>& edges)
       : parts_(parts), columns_(columns), model_(model), ports_(ports), found_(model.ports().size()) {
     for (std::size_t t = 0; t < parts.face_tags.size(); ++t)
       if (const std::int32_t port = parts.face_tags[t].port; port >= 0) found_[index(port)].tag = static_cast<std::int32_t>(t);
     count_faces(edges);
-    for (const SharedEdge& edge : edges) measure_edge(edge);
+    for (const mesh::PlanarEdge& edge : edges) measure_edge(edge);
   }
 
   [[nodiscard]] bool is_inner(std::size_t port) const { return found_[port].num_inner > 0; }
@@ -70,7 +70,7 @@ class PortCheck {
   }
 
  private:
-  void count_faces(const std::vector<SharedEdge>& edges) {
+  void count_faces(const std::vector<mesh::PlanarEdge>& edges) {
     const auto num_slabs = columns_.num_slabs();
     const auto slab_of = parts_.plan.slab_of_sublayer();
     for (const mesh::Cap& cap : parts_.caps) {
@@ -85,7 +85,7 @@ class PortCheck {
     for (const mesh::Wall& wall : parts_.walls) {
       const std::int32_t port = parts_.face_tags[index(wall.tag)].port;
       if (port < 0) continue;
-      const auto edge = std::find_if(edges.begin(), edges.end(), [&](const SharedEdge& e) {
+      const auto edge = std::find_if(edges.begin(), edges.end(), [&](const mesh::PlanarEdge& e) {
         return (e.a == wall.a && e.b == wall.b) || (e.a == wall.b && e.b == wall.a);
       });
       const bool inner = edge->right >= 0 && !columns_.at(region_of(edge->left), wall.slab).is_void() &&
@@ -106,7 +106,7 @@ class PortCheck {
     return (!label.is_void() && label.net == net) || (label.is_void() && label.hollow_net == net);
   }
 
-  void measure_edge(const SharedEdge& edge) {
+  void measure_edge(const mesh::PlanarEdge& edge) {
     const auto &p = parts_.planar.points_m()[index(edge.a)], &q = parts_.planar.points_m()[index(edge.b)];
     const double length = std::hypot(q[0] - p[0], q[1] - p[1]);
     if (const std::int32_t number = ports_.on_line(edge); number >= 0) {
@@ -183,7 +183,7 @@ bool is_on_segment(const std::array<double, 2>& p, geometry::Point from, geometr
   return std::abs(across) <= line_tolerance_m && along >= -line_tolerance_m && along <= length + line_tolerance_m;
 }
 
-std::int32_t PortFootprints::on_line(const SharedEdge& edge) const {
+std::int32_t PortFootprints::on_line(const mesh::PlanarEdge& edge) const {
   if (ports_of_region_.empty()) return -1;
   const auto& left = ports_of_region_[index(planar_.regions()[index(edge.left)])];
   static const std::vector<std::int32_t> none;
@@ -212,7 +212,7 @@ bool PortFootprints::has_slab(std::int32_t port, std::int32_t slab) const {
 }
 
 void add_ports(mesh::PrismMeshParts& parts, const Columns& columns, const model::Model& model, const PortFootprints& ports,
-               const std::vector<SharedEdge>& edges) {
+               const std::vector<mesh::PlanarEdge>& edges) {
   if (model.ports().empty()) return;
   const PortCheck check(parts, columns, model, ports, edges);
   std::string faults;
