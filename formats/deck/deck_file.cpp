@@ -3,8 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "formats/sink/file_sink.hpp"
 
 namespace pcbmesh::formats::deck {
@@ -21,7 +19,7 @@ void put_run_script(const std::filesystem::path& file, std::string_view what, st
   deck.command = {"sh", file.string()};
 }
 
-ResultFiles result_files(const FieldProblem& problem) {
+ResultFiles result_files(const FieldProblem& problem, std::string_view judged_by) {
   const std::string stem = problem.stem();
   const auto table = [&](const char* ending) {
     const std::string name = plain(stem) + ending;
@@ -29,16 +27,12 @@ ResultFiles result_files(const FieldProblem& problem) {
   };
   if (problem.options.problem == Problem::eigenmode) return table(".modes.txt");
   if (problem.options.problem == Problem::electrostatic) return table(".capacitance.txt");
-  // Modes of wave ports are normalised to the power they carry: where there is loss, S12 and S21 differ in second order of it.
-  const bool has_waves =
-      std::ranges::any_of(problem.ports, [](const FieldPort& port) { return port.port.kind == mesh::PortKind::wave; });
-  const std::string tolerance = has_waves ? " --tolerance 1e-3" : "";
   const std::string rows = plain(stem) + ".ports.txt", network = fmt::format("{}.s{}p", stem, problem.ports.size());
   return {
       rows, network,
       fmt::format("if command -v \"${{PCBMESH:=pcbmesh}}\" > /dev/null; then\n  \"$PCBMESH\" touchstone {0} -o {1}{4}\nelse\n  "
                   "echo \"pcbmesh is not on the path; run: pcbmesh touchstone {2} -o {3}{4}\" >&2\n  exit 1\nfi\n",
-                  shell_word(rows), shell_word(network), rows, plain(network), tolerance)};
+                  shell_word(rows), shell_word(network), rows, plain(network), judged_by)};
 }
 
 void put_run_script(const std::filesystem::path& folder, const FieldProblem& problem, std::string_view solver,
