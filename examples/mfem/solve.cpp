@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Solves what pcbmesh wrote for MFEM (--for mfem): capacitances by nodal elements, driven sweeps by Nedelec elements, on prisms
-// or tetrahedra. Every group is found by its name, which MFEM reads from the mesh (format 1.3). Time is exp(+i omega t).
+// Solves what pcbmesh wrote for MFEM (--for mfem): capacitances by nodal elements, driven sweeps and resonances by Nedelec
+// elements, on prisms or tetrahedra. Resonances take ARPACK for the eigenvalues: compile with -DPCBMESH_ARPACK -larpack. Every group is found by its name, which MFEM reads from the mesh (format 1.3). Time is exp(+i omega t).
 // usage: solve x.problem.txt [order]
+#include <algorithm>
 #include <complex>
 #include <cstdio>
 #include <cstdlib>
@@ -9,9 +10,13 @@
 #include <iomanip>
 #include <iostream>
 #include <map>
+#include <memory>
 #include <sstream>
 
 #include "mfem.hpp"
+#ifdef PCBMESH_ARPACK
+#include <arpack/arpack.h>
+#endif
 
 namespace {
 
@@ -49,6 +54,8 @@ struct Problem {
   std::string kind, mesh, result;
   double unit = 1;
   std::vector<double> frequencies;
+  int num_modes = 0;
+  double above = 0;  // Hz
   std::vector<Volume> volumes;
   std::vector<Face> faces;
   std::vector<Port> ports;
@@ -96,6 +103,7 @@ Problem read(const char* name) {
     else if (key == "result") in >> std::quoted(problem.result);
     else if (key == "unit_m") in >> problem.unit;
     else if (key == "frequency_hz") in >> problem.frequencies.emplace_back();
+    else if (key == "modes") in >> problem.num_modes >> problem.above;
     else if (key == "volume") {
       Volume& v = problem.volumes.emplace_back();
       in >> std::quoted(v.name) >> v.kind >> v.material;
@@ -219,19 +227,110 @@ Complex admittance(const Face& face, const Problem& problem, double hz, double z
   return medium == nullptr ? 1.0 : std::sqrt(medium->permittivity(hz) / medium->mu_r);
 }
 
+/// Unknowns of the edges on faces with one of these conditions, and in metal.
+mfem::Array<int> metal_unknowns(const Problem& problem, const Groups& groups, const std::vector<std::string>& conditions) {
+  mfem::Array<int> metal;
+  for (const Face& face : problem.faces)
+    if (std::find(conditions.begin(), conditions.end(), face.condition) != conditions.end())
+      groups.add_unknowns_of_face(face.name, metal);
+  for (const Volume& volume : problem.volumes)
+    if (volume.kind != "dielectric") groups.add_unknowns_of_volume(volume.name, metal);
+  metal.Sort();
+  metal.Unique();
+  return metal;
+}
+
+#if defined(MFEM_USE_SUITESPARSE) && defined(PCBMESH_ARPACK)
+struct Mode {
+  double value;
+  mfem::Vector field;
+};
+
+/// The `number` lowest eigenvalues of stiffness x = value mass x above `shift`, by shift and invert. Static solutions lie at
+/// zero, below every shift, so they are never among them.
+std::vector<Mode> modes_above(double shift, int number, const mfem::SparseMatrix& stiffness, const mfem::SparseMatrix& mass) {
+  std::unique_ptr<mfem::SparseMatrix> shifted(mfem::Add(1.0, stiffness, -shift, mass));
+  mfem::UMFPackSolver inverse(*shifted);
+  const int n = stiffness.Height(), basis = std::min(n, std::max(2 * number + 1, 20)), work = basis * (basis + 8);
+  std::vector<double> start(n), vectors(static_cast<std::size_t>(n) * basis), room(3 * static_cast<std::size_t>(n)), inner(work), values(number);
+  std::vector<int> choice(basis);
+  int step = 0, info = 0, pointers[14] = {}, parameters[11] = {1, 0, 500, 1, 0, 0, 3};
+  mfem::Vector right(n);
+  for (;;) {
+    dsaupd_c(&step, "G", n, "LA", number, 1e-12, start.data(), basis, vectors.data(), n, parameters, pointers, room.data(), inner.data(), work, &info);
+    if (step != -1 && step != 1 && step != 2) break;
+    mfem::Vector in(&room[pointers[0] - 1], n), out(&room[pointers[1] - 1], n);
+    if (step == 2) {
+      mass.Mult(in, out);
+      continue;
+    }
+    if (step == -1) mass.Mult(in, right);
+    inverse.Mult(step == -1 ? right : mfem::Vector(&room[pointers[2] - 1], n), out);
+  }
+  if (info < 0 || parameters[4] < number) mfem::mfem_error("the eigenvalues do not converge; ask for fewer modes, or from another frequency");
+  dseupd_c(1, "A", choice.data(), values.data(), vectors.data(), n, shift, "G", n, "LA", number, 1e-12, start.data(), basis, vectors.data(), n,
+           parameters, pointers, room.data(), inner.data(), work, &info);
+  if (info != 0) mfem::mfem_error("ARPACK gives no eigenvectors");
+  std::vector<Mode> modes;
+  for (int m = 0; m < number; ++m) {
+    modes.push_back({values[m], mfem::Vector(n)});
+    std::copy_n(&vectors[static_cast<std::size_t>(m) * n], n, modes.back().field.GetData());
+  }
+  std::sort(modes.begin(), modes.end(), [](const Mode& a, const Mode& b) { return a.value < b.value; });
+  return modes;
+}
+#endif
+
+void resonances(const Problem& problem, mfem::Mesh& mesh, int order) {
+#if defined(MFEM_USE_SUITESPARSE) && defined(PCBMESH_ARPACK)
+  const mfem::ND_FECollection elements(order, 3);
+  mfem::FiniteElementSpace space(&mesh, &elements);
+  const Groups groups(mesh, space);
+  std::cout << space.GetVSize() << " unknowns of order " << order << std::endl;
+  // Loss of the skins is second order in the frequency of a resonance: they are ideal here.
+  const mfem::Array<int> metal = metal_unknowns(problem, groups, {"pec", "conductor"});
+  const auto matrix = [&](mfem::BilinearFormIntegrator* term, mfem::Operator::DiagonalPolicy diagonal) {
+    auto form = std::make_unique<mfem::BilinearForm>(&space);
+    form->AddDomainIntegrator(term);
+    form->Assemble(0);
+    form->Finalize(0);
+    for (const int dof : metal) form->SpMat().EliminateRowCol(dof, diagonal);
+    return form;
+  };
+  const auto by_volume = [&](auto value) {
+    return groups.by_attribute(problem, [&](const Volume& v) { return v.kind == "dielectric" ? value(v.material) : 0.0; });
+  };
+  mfem::Vector nu = groups.by_attribute(problem, [](const Volume& v) { return 1 / v.material.mu_r; });
+  mfem::Vector eps = by_volume([](const Material& m) { return m.eps_r; });
+  mfem::Vector loss = by_volume([&](const Material& m) { return -m.permittivity(problem.above).imag(); });
+  mfem::PWConstCoefficient reluctivity(nu), permittivity(eps), lost(loss);
+  const auto stiffness = matrix(new mfem::CurlCurlIntegrator(reluctivity), mfem::Operator::DIAG_ONE);
+  const auto mass = matrix(new mfem::VectorFEMassIntegrator(permittivity), mfem::Operator::DIAG_ZERO);
+  const auto lossy = matrix(new mfem::VectorFEMassIntegrator(lost), mfem::Operator::DIAG_ZERO);
+  const double hz_per_root = light / (2 * pi * problem.unit);
+  const std::vector<Mode> modes =
+      modes_above(std::pow(problem.above / hz_per_root, 2), problem.num_modes, stiffness->SpMat(), mass->SpMat());
+  std::ofstream file(problem.result);
+  file << std::setprecision(17);  // rows: mode, value; Q of the dielectric = stored/lost
+  const auto column = [&](const char* title, auto value) {
+    file << "# " << title << "\n";
+    for (std::size_t m = 0; m < modes.size(); ++m) file << m << " " << value(modes[m]) << "\n";
+  };
+  column("frequency_hz", [&](const Mode& mode) { return hz_per_root * std::sqrt(mode.value); });
+  column("stored", [&](const Mode& mode) { return mass->SpMat().InnerProduct(mode.field, mode.field); });
+  column("lost", [&](const Mode& mode) { return lossy->SpMat().InnerProduct(mode.field, mode.field); });
+#else
+  mfem::mfem_error("resonances want MFEM with SuiteSparse (MFEM_USE_SUITESPARSE=YES) and ARPACK (-DPCBMESH_ARPACK -larpack)");
+#endif
+}
+
 void driven(const Problem& problem, mfem::Mesh& mesh, int order) {
 #ifdef MFEM_USE_SUITESPARSE
   const mfem::ND_FECollection elements(order, 3);
   mfem::FiniteElementSpace space(&mesh, &elements);
   const Groups groups(mesh, space);
   std::cout << space.GetVSize() << " unknowns of order " << order << std::endl;
-  mfem::Array<int> metal;
-  for (const Face& face : problem.faces)
-    if (face.condition == "pec") groups.add_unknowns_of_face(face.name, metal);
-  for (const Volume& volume : problem.volumes)
-    if (volume.kind != "dielectric") groups.add_unknowns_of_volume(volume.name, metal);
-  metal.Sort();
-  metal.Unique();
+  const mfem::Array<int> metal = metal_unknowns(problem, groups, {"pec"});
   // Integral of the field along each port: source and voltmeter in one.
   std::vector<mfem::Vector> along;
   for (std::size_t p = 0; p < problem.ports.size(); ++p) {
@@ -318,6 +417,6 @@ int main(int argc, char** argv) {
   const Problem problem = read(argv[1]);
   const int order = argc > 2 ? std::atoi(argv[2]) : 1;
   mfem::Mesh mesh(problem.mesh.c_str(), 1, 0);
-  (problem.kind == "driven" ? driven : capacitances)(problem, mesh, order);
+  (problem.kind == "driven" ? driven : problem.kind == "eigenmode" ? resonances : capacitances)(problem, mesh, order);
   return 0;
 }

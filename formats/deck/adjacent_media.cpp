@@ -75,20 +75,21 @@ class Survey {
 
 std::vector<std::vector<Medium>> adjacent_media(const mesh::PrismMesh& mesh) {
   std::vector<std::vector<Medium>> out(mesh.face_tags().size());
-  const auto absorbs = [&](std::int32_t tag) {
-    return mesh.face_tags()[index(tag)].condition == mesh::BoundaryCondition::absorbing;
+  const auto looks_out = [&](std::int32_t tag) {
+    const mesh::FaceTag& face = mesh.face_tags()[index(tag)];
+    return face.condition == mesh::BoundaryCondition::absorbing || face.kind == mesh::FaceTagKind::wave_port;
   };
   Survey survey(mesh);
   const auto slab_of = mesh.plan().slab_of_sublayer();
   for (const mesh::Cap& cap : mesh.caps()) {
-    if (!absorbs(cap.tag)) continue;
+    if (!looks_out(cap.tag)) continue;
     const std::int32_t slab = slab_of[index(cap.up ? cap.level - 1 : cap.level)];
     survey.add(cap.tag, slab, cap.triangle, mesh.planar().area_m2(cap.triangle));
   }
   // Walls know their edge; the meshed triangle is the one to its left.
   std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> left_of;
   for (const mesh::Wall& wall : mesh.walls())
-    if (absorbs(wall.tag)) left_of.insert({{wall.a, wall.b}, -1});
+    if (looks_out(wall.tag)) left_of.insert({{wall.a, wall.b}, -1});
   if (!left_of.empty())
     for (std::int32_t t = 0; t < mesh.planar().num_triangles(); ++t) {
       const auto& corners = mesh.planar().triangles()[index(t)];
@@ -97,7 +98,7 @@ std::vector<std::vector<Medium>> adjacent_media(const mesh::PrismMesh& mesh) {
           found->second = t;
     }
   for (const mesh::Wall& wall : mesh.walls()) {
-    if (!absorbs(wall.tag)) continue;
+    if (!looks_out(wall.tag)) continue;
     const std::int32_t triangle = left_of.at({wall.a, wall.b});
     const auto &p = mesh.planar().points_m()[index(wall.a)], &q = mesh.planar().points_m()[index(wall.b)];
     if (triangle >= 0) survey.add(wall.tag, wall.slab, triangle, std::hypot(q[0] - p[0], q[1] - p[1]));

@@ -7,8 +7,8 @@
 
 namespace pcbmesh::formats::deck {
 
-/// Per face tag of an absorbing boundary: what it looks into, slab by slab, equal neighbours joined. Conductors don't count:
-/// the field has no tangential part there. Empty for every other tag. @cost O(planar mesh + faces).
+/// Per face tag of an absorbing boundary or a wave port: what it looks into, slab by slab, equal neighbours joined. Conductors
+/// don't count: the field has no tangential part there. Empty for every other tag. @cost O(planar mesh + faces).
 [[nodiscard]] std::vector<std::vector<Medium>> adjacent_media(const mesh::PrismMesh& mesh);
 
 }  // namespace pcbmesh::formats::deck

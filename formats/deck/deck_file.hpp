@@ -21,6 +21,12 @@ struct ResultFiles {
   std::string final;    ///< what the command ends in: a Touchstone file for a driven problem
   std::string after;    ///< lines of the run script from one to the other
 };
-[[nodiscard]] ResultFiles result_files(const FieldProblem& problem);
+/// @param judged_by  options of `pcbmesh touchstone`, with a blank before each
+[[nodiscard]] ResultFiles result_files(const FieldProblem& problem, std::string_view judged_by = "");
+
+/// The run script of such a solver: `body` writes the table, what follows makes of it what the command ends in.
+/// @param solver  its name, and where it comes from  @param environment  what the variables of the shell mean
+void put_run_script(const std::filesystem::path& folder, const FieldProblem& problem, std::string_view solver,
+                    std::string_view environment, std::string_view body, Deck& deck);
 
 }  // namespace pcbmesh::formats::deck

@@ -46,7 +46,7 @@ struct Face {
   double thickness_m = 0;       ///< condition conductor on a sheet; 0 = thick
   std::int32_t port = -1;       ///< index into ports
   std::int32_t partner = -1;    ///< condition periodic: id of the opposite side
-  std::vector<Medium> media{};  ///< condition absorbing: bottom to top
+  std::vector<Medium> media{};  ///< condition absorbing, or a wave port: bottom to top
 };
 
 struct FieldPort {

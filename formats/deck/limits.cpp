@@ -24,7 +24,8 @@ void require_ports(const Limits& limits, const FieldProblem& problem) {
              "a lumped port on the track beside the via; GetDP and Palace have coaxial ports");
     if (port.port.kind == mesh::PortKind::wave && !limits.wave_ports)
       refuse(limits.solver, fmt::format("wave port '{}' in this deck", port.port.name),
-             "a lumped port across the gap between trace and reference; Palace has wave ports");
+             "a lumped port across the gap between trace and reference; GetDP has wave ports of TEM and quasi-TEM lines, "
+             "Palace of any");
   }
 }
 
@@ -41,9 +42,12 @@ void require_faces(const Limits& limits, const FieldProblem& problem) {
              fmt::format("resonances with the {} boundary '{}', which makes the eigenvalue problem non-linear",
                          mesh::name_of(face.condition), face.name),
              "pec or pmc there, or a driven sweep");
-    if (problem.options.problem == Problem::electrostatic && face.kind == mesh::FaceTagKind::conductor && face.net < 0 &&
-        !limits.floating_skins)
-      refuse(limits.solver, fmt::format("hollow copper without a net, '{}', which floats", face.name),
+    // No solver here lets a surface float: its condition would be none, which is no copper at all.
+    const bool is_copper = face.kind == mesh::FaceTagKind::conductor || face.kind == mesh::FaceTagKind::sheet;
+    if (problem.options.problem == Problem::electrostatic && is_copper && face.net < 0)
+      refuse(limits.solver,
+             fmt::format("{} copper without a net, '{}', which floats",
+                         face.kind == mesh::FaceTagKind::sheet ? "sheet" : "hollow", face.name),
              "solid copper there, which floats as a body of very high permittivity, in GetDP or dolfinx");
   }
 }

@@ -15,7 +15,6 @@ struct Limits {
   bool coaxial_ports = false;     ///< in driven problems
   bool lossy_resonances = false;  ///< boundaries that make the eigenvalue problem non-linear
   bool periodic_sides = false;    ///< in full wave: edges of the partner side are linked
-  bool floating_skins = false;    ///< electrostatic: hollow copper without a net
 };
 
 /// state(), held against what the solver can do. @throws as state(); Error format_limit (703) with the nearest it can do.

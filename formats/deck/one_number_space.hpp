@@ -18,6 +18,7 @@ class OneNumberSpace final : public mesh::MeshSource {
   void visit_field(std::size_t block, mesh::CellField field, const VisitValues& visit) override {
     source_.visit_field(block, field, visit);
   }
+  [[nodiscard]] const mesh::PrismMesh* prisms() const override { return source_.prisms(); }
 
  private:
   mesh::MeshSource& source_;

@@ -119,28 +119,21 @@ Deck write(const mesh::PrismMesh& mesh, const DeckOptions& options, const std::f
            Diagnostics& diagnostics) {
   const deck::FieldProblem problem = deck::state_within(limits, mesh, options, 0, diagnostics);
   const std::string stem = problem.stem();
-  const deck::ResultFiles results = deck::result_files(problem);
   Deck deck;
-  deck::put_file(
-      folder / (stem + ".py"),
-      fmt::format("#!/usr/bin/python3\n# {}, written by pcbmesh. Run it: sh {}\nimport json\n\nPROBLEM = "
-                  "json.loads(r\"\"\"{}\"\"\")\n\n{}",
-                  deck::plain(options.mesh), deck::plain(stem + ".run.sh"), study_text(problem, results.written), solve_text),
-      deck);
-  deck::put_run_script(
-      folder / (stem + ".run.sh"),
-      fmt::format(
-          "Solves {} with dolfinx (Debian: apt-get install python3-dolfinx-complex python3-h5py) and ends in {}. PYTHON, "
-          "PCBMESH: where the programs are.",
-          deck::plain(options.mesh), deck::plain(results.final)),
-      fmt::format("# Debian keeps dolfinx for real and for complex numbers apart.\n"
-                  "[ -n \"${{PETSC_DIR:-}}\" ] || [ ! -d /usr/lib/petscdir/petsc-complex ] || export "
-                  "PETSC_DIR=/usr/lib/petscdir/petsc-complex SLEPC_DIR=/usr/lib/slepcdir/slepc-complex\n"
-                  "export OMP_NUM_THREADS=\"${{OMP_NUM_THREADS:-1}}\"\n\"${{PYTHON:-/usr/bin/python3}}\" {}\n{}",
-                  deck::shell_word(stem + ".py"), results.after),
-      deck);
-  deck.result = results.final;
-  deck.calls_pcbmesh = options.problem == Problem::driven;
+  deck::put_file(folder / (stem + ".py"),
+                 fmt::format("#!/usr/bin/python3\n# {}, written by pcbmesh. Run it: sh {}\nimport json\n\nPROBLEM = "
+                             "json.loads(r\"\"\"{}\"\"\")\n\n{}",
+                             deck::plain(options.mesh), deck::plain(stem + ".run.sh"),
+                             study_text(problem, deck::result_files(problem).written), solve_text),
+                 deck);
+  deck::put_run_script(folder, problem, "dolfinx (Debian: apt-get install python3-dolfinx-complex python3-h5py)",
+                       "PYTHON, PCBMESH: where the programs are.",
+                       fmt::format("# Debian keeps dolfinx for real and for complex numbers apart.\n"
+                                   "[ -n \"${{PETSC_DIR:-}}\" ] || [ ! -d /usr/lib/petscdir/petsc-complex ] || export "
+                                   "PETSC_DIR=/usr/lib/petscdir/petsc-complex SLEPC_DIR=/usr/lib/slepcdir/slepc-complex\n"
+                                   "export OMP_NUM_THREADS=\"${{OMP_NUM_THREADS:-1}}\"\n\"${{PYTHON:-/usr/bin/python3}}\" {}",
+                                   deck::shell_word(stem + ".py")),
+                       deck);
   return deck;
 }
 

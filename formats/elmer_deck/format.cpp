@@ -10,7 +10,7 @@
 namespace pcbmesh::formats::elmer_deck {
 namespace {
 
-constexpr deck::Limits limits{.solver = "Elmer", .solid_copper = false, .floating_skins = true};
+constexpr deck::Limits limits{.solver = "Elmer", .solid_copper = false};
 
 void require(const mesh::PrismMesh& mesh, const DeckOptions& options) {
   Diagnostics ignored;

@@ -2,7 +2,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 #include "formats/deck/deck_file.hpp"
+#include "formats/getdp/wave_ports.hpp"
 #include "formats/getdp/write_pro.hpp"
 
 namespace pcbmesh::formats::getdp {
@@ -22,7 +25,8 @@ std::vector<std::int32_t> surface_term_faces(const deck::FieldProblem& problem) 
   std::vector<std::int32_t> ids;
   for (const deck::Face& face : problem.faces)
     if (face.condition == BoundaryCondition::absorbing || face.condition == BoundaryCondition::impedance ||
-        face.condition == BoundaryCondition::conductor || face.condition == BoundaryCondition::port)
+        face.condition == BoundaryCondition::conductor ||
+        (face.condition == BoundaryCondition::port && !is_wave(problem.ports[static_cast<std::size_t>(face.port)])))
       ids.push_back(face.id);
   return ids;
 }
@@ -66,6 +70,7 @@ std::string admittances(const deck::FieldProblem& problem, double unit_m) {
         break;
       }
       case BoundaryCondition::port:
+        if (is_wave(problem.ports[static_cast<std::size_t>(face.port)])) continue;
         value = fmt::format("Z0/(R_{0}*W_{0}/H_{0})", face.port + 1);
         break;
       default:
@@ -90,6 +95,7 @@ std::string ring_constants(const mesh::Port& port, std::size_t port_number, doub
 std::string port_constants(const deck::FieldProblem& problem, double unit_m) {
   std::string out;
   for (std::size_t p = 0; p < problem.ports.size(); ++p) {
+    if (is_wave(problem.ports[p])) continue;
     const mesh::Port& port = problem.ports[p].port;
     out += fmt::format("  // port {}: {}\n", p + 1, deck::plain(port.name));
     out += fmt::format(
@@ -109,12 +115,16 @@ std::string port_constants(const deck::FieldProblem& problem, double unit_m) {
 
 std::string port_groups(const deck::FieldProblem& problem) {
   std::string out;
-  std::vector<std::int32_t> all;
+  std::vector<std::int32_t> all, lumped, waves;
   for (std::size_t p = 0; p < problem.ports.size(); ++p) {
-    out += fmt::format("  Sur_Port_{} = {};\n", p + 1, region(problem.ports[p].faces));
-    all.insert(all.end(), problem.ports[p].faces.begin(), problem.ports[p].faces.end());
+    const std::vector<std::int32_t>& faces = problem.ports[p].faces;
+    out += fmt::format("  Sur_Port_{} = {};\n", p + 1, region(faces));
+    all.insert(all.end(), faces.begin(), faces.end());
+    std::vector<std::int32_t>& kind = is_wave(problem.ports[p]) ? waves : lumped;
+    kind.insert(kind.end(), faces.begin(), faces.end());
   }
-  return out + fmt::format("  Sur_Ports = {};\n", region(all));
+  return out +
+         fmt::format("  Sur_Ports = {};\n  Sur_Lumped = {};\n  Sur_Waves = {};\n", region(all), region(lumped), region(waves));
 }
 
 /// For one frequency: factor once, then one right-hand side per excited port.
@@ -148,16 +158,17 @@ std::string times(const std::string& factor) {
 std::string driven_pro(const deck::FieldProblem& problem) {
   const double unit_m = metres_per(problem.options.unit);
   const std::string results = deck::result_files(problem).written;
+  const WavePorts waves = wave_ports(problem);
   std::vector<std::int32_t> metal = metal_volumes(problem);
   const std::vector<std::int32_t> pec = problem.faces_with(BoundaryCondition::pec);
   metal.insert(metal.end(), pec.begin(), pec.end());
   std::string out = opening(problem, "Driven full wave");
-  out += "Group {\n" + named_groups(problem) + port_groups(problem);
+  out += "Group {\n" + named_groups(problem) + port_groups(problem) + waves.groups;
   out += fmt::format("  Vol_Field = {};\n  Vol_Metal = {};\n  Vol_Every = Region[{{Vol_Field, Vol_Metal}}];\n",
                      region(field_volumes(problem)), region(metal_volumes(problem)));
   out += fmt::format("  Dom_Metal = {};  // no tangential field\n  Sur_Terms = {};\n", region(metal),
                      region(surface_term_faces(problem)));
-  out += "  Dom_E = Region[{Vol_Field, Sur_Terms}];\n}\nFunction {\n";
+  out += "  Dom_E = Region[{Vol_Field, Sur_Terms, Sur_Waves}];\n}\nFunction {\n";
   out += fmt::format("  Light = {}; Z0 = {}; Eps0 = {}; Mu0 = {};\n  Unit = {};  // metres per mesh unit\n",
                      number(deck::light_m_per_s), number(deck::free_space_ohm), number(deck::eps0_f_per_m),
                      number(deck::mu0_h_per_m), number(unit_m));
@@ -174,27 +185,33 @@ std::string driven_pro(const deck::FieldProblem& problem) {
                          permittivity(volume.material), times(stretch_tensor(volume.stretched, false)),
                          number(1 / volume.material.mu_r), times(stretch_tensor(volume.stretched, true)),
                          deck::plain(volume.name));
-  out += port_constants(problem, unit_m) + admittances(problem, unit_m) + "}\n";
+  out += port_constants(problem, unit_m) + waves.functions + admittances(problem, unit_m) + "}\n";
   out += edge_space(problem, "Dom_E");
   out += integration();
-  out += R"(Formulation {
-  { Name Form_E; Type FemEquation; Quantity { { Name e; Type Local; NameOfSpace Hcurl_E; } }
+  out += waves.statics;
+  out += fmt::format(
+      "Formulation {{\n  {{ Name Form_E; Type FemEquation; Quantity {{ {{ Name e; Type Local; NameOfSpace Hcurl_E; }}{} }}",
+      waves.quantities);
+  out += R"(
     Equation {
       Galerkin { [ nu_Vol[] * Dof{d e}, {d e} ]; In Vol_Field; Jacobian Jac_All; Integration Int_All; }
       Galerkin { [ -k0[]^2 * eps_Vol[] * Dof{e}, {e} ]; In Vol_Field; Jacobian Jac_All; Integration Int_All; }
-      Galerkin { [ I[] * k0[] * y_Face[] * Dof{e}, {e} ]; In Sur_Terms; Jacobian Jac_All; Integration Int_All; }
-      Galerkin { [ -2 * I[] * k0[] * y_Face[] * e_Wave[], {e} ]; In Sur_Ports; Jacobian Jac_All; Integration Int_All; }
-    } }
-}
 )";
+  if (!surface_term_faces(problem).empty())
+    out += "      Galerkin { [ I[] * k0[] * y_Face[] * Dof{e}, {e} ]; In Sur_Terms; Jacobian Jac_All; Integration Int_All; }\n";
+  if (!std::ranges::all_of(problem.ports, is_wave))
+    out +=
+        "      Galerkin { [ -2 * I[] * k0[] * y_Face[] * e_Wave[], {e} ]; In Sur_Lumped; Jacobian Jac_All; Integration "
+        "Int_All; }\n";
+  out += waves.sources + "    } }\n}\n";
   out += fmt::format(
       "Resolution {{\n  {{ Name Driven; System {{ {{ Name Sys_E; NameOfFormulation Form_E; Type Complex; Frequency "
-      "Sweep(0); }} }}\n    Operation {{\n      DeleteFile[\"{}\"];\n      Print[ \"# pcbmesh port results 1\", "
+      "Sweep(0); }}{} }}\n    Operation {{\n{}      DeleteFile[\"{}\"];\n      Print[ \"# pcbmesh port results 1\", "
       "File \"{}\" ];\n",
-      results, results);
+      waves.systems, waves.operations, results, results);
   for (std::size_t p = 0; p < problem.ports.size(); ++p)
-    out += fmt::format("      Print[ {{R_{0}}}, Format \"# port {0} %.17g {1}\", File \"{2}\" ];\n", p + 1,
-                       deck::plain(problem.ports[p].port.name), results);
+    out += fmt::format("      Print[ {{{3}_{0}}}, Format \"# port {0} %.17g {1}\", File \"{2}\" ];\n", p + 1,
+                       deck::plain(problem.ports[p].port.name), results, is_wave(problem.ports[p]) ? "$z" : "R");
   out += fmt::format("      Print[ \"# frequency_hz excited observed re im\", File \"{}\" ];\n", results);
   out += "      For i In {0:#Sweep()-1}\n        Evaluate[ $frequency = Sweep(i) ]; SetFrequency[Sys_E, Sweep(i)];\n";
   out += sweep(problem, results);
@@ -203,13 +220,15 @@ std::string driven_pro(const deck::FieldProblem& problem) {
       "NameOfSystem Sys_E; Quantity {\n"
       "      { Name e; Value { Local { [ {e} ]; In Vol_Field; Jacobian Jac_All; } } }\n";
   for (std::size_t p = 0; p < problem.ports.size(); ++p) {
+    if (is_wave(problem.ports[p])) continue;
     const bool is_ring = problem.ports[p].port.kind == mesh::PortKind::coaxial;
     out += fmt::format(
         "      {{ Name v_{0}; Value {{ Integral {{ [ {{e}}*d_Port[]/{1} ]; In Sur_Port_{0}; Jacobian Jac_All; "
         "Integration Int_All; }} }} }}\n",
         p + 1, is_ring ? std::string("(2*Pi*r_Port[])") : fmt::format("W_{}", p + 1));
   }
-  out += "    } }\n}\nPostOperation {\n  { Name Volts; NameOfPostProcessing Post_E; Operation {\n";
+  out += waves.observables + "    } }\n}\n" + waves.post +
+         "PostOperation {\n  { Name Volts; NameOfPostProcessing Post_E; Operation {\n";
   for (std::size_t p = 0; p < problem.ports.size(); ++p)
     out += fmt::format(
         "      Print[ v_{0}[Sur_Port_{0}], OnGlobal, Format Table, StoreInVariable $volts_{0}, File \"/dev/null\" ];\n", p + 1);

@@ -7,28 +7,34 @@
 
 #include "formats/deck/deck_file.hpp"
 #include "formats/deck/limits.hpp"
+#include "formats/getdp/wave_ports.hpp"
 #include "formats/getdp/write_pro.hpp"
 #include "pcbmesh/base/error.hpp"
 
 namespace pcbmesh::formats::getdp {
 namespace {
 
-constexpr deck::Limits limits{.solver = "GetDP", .coaxial_ports = true, .periodic_sides = true};
+constexpr deck::Limits limits{.solver = "GetDP", .wave_ports = true, .coaxial_ports = true, .periodic_sides = true};
 
 std::int32_t num_volumes(const mesh::PrismMesh& mesh) {
   return static_cast<std::int32_t>(mesh.volume_tags().size());
 }
 
+deck::FieldProblem state(const mesh::PrismMesh& mesh, const DeckOptions& options, Diagnostics& diagnostics) {
+  deck::FieldProblem problem = deck::state_within(limits, mesh, options, num_volumes(mesh), diagnostics);
+  if (options.problem == Problem::driven) require_tem_ports(problem, diagnostics);
+  return problem;
+}
+
 void require(const mesh::PrismMesh& mesh, const DeckOptions& options) {
   Diagnostics ignored;
-  (void)deck::state_within(limits, mesh, options, num_volumes(mesh), ignored);
+  (void)state(mesh, options, ignored);
 }
 
 Deck write(const mesh::PrismMesh& mesh, const DeckOptions& options, const std::filesystem::path& folder,
            Diagnostics& diagnostics) {
-  const deck::FieldProblem problem = deck::state_within(limits, mesh, options, num_volumes(mesh), diagnostics);
+  const deck::FieldProblem problem = state(mesh, options, diagnostics);
   const std::string stem = problem.stem();
-  const deck::ResultFiles results = deck::result_files(problem);
   std::string text, resolution;
   switch (options.problem) {
     case Problem::driven:
@@ -46,16 +52,10 @@ Deck write(const mesh::PrismMesh& mesh, const DeckOptions& options, const std::f
   }
   Deck deck;
   deck::put_file(folder / (stem + ".pro"), text, deck);
-  deck::put_run_script(
-      folder / (stem + ".run.sh"),
-      fmt::format(
-          "Solves {} with GetDP (Debian: apt-get install getdp) and ends in {}. GETDP, PCBMESH: where the programs are.",
-          deck::plain(options.mesh), deck::plain(results.final)),
-      fmt::format("\"${{GETDP:-getdp}}\" {} -msh {} -solve {} -v 3\n{}", deck::shell_word(stem + ".pro"),
-                  deck::shell_word(options.mesh), resolution, results.after),
-      deck);
-  deck.result = results.final;
-  deck.calls_pcbmesh = options.problem == Problem::driven;
+  deck::put_run_script(folder, problem, "GetDP (Debian: apt-get install getdp)", "GETDP, PCBMESH: where the programs are.",
+                       fmt::format("\"${{GETDP:-getdp}}\" {} -msh {} -solve {} -v 3", deck::shell_word(stem + ".pro"),
+                                   deck::shell_word(options.mesh), resolution),
+                       deck);
   return deck;
 }
 

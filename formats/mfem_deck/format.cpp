@@ -63,6 +63,7 @@ std::string problem_text(const deck::FieldProblem& problem, const std::string& r
       study::name_of(options.problem), in_quotes(options.mesh), metres_per(options.unit), in_quotes(results));
   if (options.problem == Problem::driven)
     for (const double hz : options.frequencies_hz) out += fmt::format("frequency_hz {}\n", hz);
+  if (options.problem == Problem::eigenmode) out += fmt::format("modes {} {}\n", options.modes.number, options.modes.above_hz);
   for (const deck::Volume& volume : problem.volumes) {
     const bool floats = std::ranges::find(problem.floating, volume.id) != problem.floating.end();
     const char* kind = floats ? "floating" : volume.is_conductor ? "conductor" : "dielectric";
@@ -83,44 +84,33 @@ std::string problem_text(const deck::FieldProblem& problem, const std::string& r
   return out + fmt::format("ground{}\n", named(problem.faces, ground));
 }
 
-deck::FieldProblem state(const mesh::PrismMesh& mesh, const DeckOptions& options, Diagnostics& diagnostics) {
-  if (options.problem == Problem::eigenmode)
-    deck::refuse(limits.solver, "resonances in this driver, for MFEM without MPI has no eigenvalue solver",
-                 "a driven sweep; GetDP, dolfinx, Palace and Elmer have resonances");
-  return deck::state_within(limits, mesh, options, 0, diagnostics);
-}
-
 void require(const mesh::PrismMesh& mesh, const DeckOptions& options) {
   Diagnostics ignored;
-  (void)state(mesh, options, ignored);
+  (void)deck::state_within(limits, mesh, options, 0, ignored);
 }
 
 Deck write(const mesh::PrismMesh& mesh, const DeckOptions& options, const std::filesystem::path& folder,
            Diagnostics& diagnostics) {
-  const deck::FieldProblem problem = state(mesh, options, diagnostics);
+  const deck::FieldProblem problem = deck::state_within(limits, mesh, options, 0, diagnostics);
   const std::string stem = problem.stem();
-  const deck::ResultFiles results = deck::result_files(problem);
   Deck deck;
-  deck::put_file(folder / (stem + ".problem.txt"), problem_text(problem, results.written), deck);
+  deck::put_file(folder / (stem + ".problem.txt"), problem_text(problem, deck::result_files(problem).written), deck);
   deck::put_file(folder / (stem + ".solve.cpp"), solve_text, deck);
   const std::string source = deck::shell_word(stem + ".solve.cpp"), program = deck::shell_word("./" + stem + ".solve");
+  const std::string_view arpack = options.problem == Problem::eigenmode ? " -DPCBMESH_ARPACK" : "",
+                         library = options.problem == Problem::eigenmode ? " -larpack" : "";
   deck::put_run_script(
-      folder / (stem + ".run.sh"),
-      fmt::format(
-          "Compiles the driver and solves {} with MFEM; ends in {}. MFEM_DIR: where MFEM was built or installed; ORDER: of "
-          "the elements; PCBMESH: where that is.",
-          deck::plain(options.mesh), deck::plain(results.final)),
+      folder, problem, "MFEM, by the driver that it compiles first,",
+      fmt::format("MFEM_DIR: where MFEM was built or installed; ORDER: of the elements; PCBMESH: where that is.{}",
+                  library.empty() ? "" : " ARPACK finds the eigenvalues (Debian: apt-get install libarpack2-dev)."),
       fmt::format("config=\"${{MFEM_DIR:-/usr}}/config/config.mk\"\n[ -f \"$config\" ] || "
                   "config=\"${{MFEM_DIR:-/usr}}/share/mfem/config.mk\"\n"
                   "if [ ! -f \"$config\" ]; then\n  echo \"MFEM is not found: set MFEM_DIR to the folder where it was built or "
                   "installed\" >&2\n  exit 1\nfi\n"
-                  "printf 'include %s\\nall:\\n\\t$(MFEM_CXX) $(MFEM_FLAGS) %s -o %s $(MFEM_LIBS)\\n' \"$config\" {0} {1} | "
-                  "make -s -f - "
-                  "all\n{1} {2} \"${{ORDER:-1}}\"\n{3}",
-                  source, program, deck::shell_word(stem + ".problem.txt"), results.after),
+                  "printf 'include %s\nall:\n\t$(MFEM_CXX) $(MFEM_FLAGS){3} %s -o %s $(MFEM_LIBS){4}\n' \"$config\" {0} {1} | "
+                  "make -s -f - all\n{1} {2} \"${{ORDER:-1}}\"",
+                  source, program, deck::shell_word(stem + ".problem.txt"), arpack, library),
       deck);
-  deck.result = results.final;
-  deck.calls_pcbmesh = options.problem == Problem::driven;
   return deck;
 }
 
@@ -128,7 +118,8 @@ Deck write(const mesh::PrismMesh& mesh, const DeckOptions& options, const std::f
 
 constinit const DeckFormat deck_format{
     "mfem",
-    "MFEM: named attribute sets and a driver in C++: full wave by edge elements on prisms, capacitances; ends in Touchstone",
+    "MFEM: named attribute sets and a driver in C++: full wave and resonances by edge elements on prisms, capacitances; ends "
+    "in Touchstone",
     {.format = "mfem", .version = "1.3", .ending = ".mesh", .binary = true, .one_number_space = false, .tetrahedra = false},
     &require,
     &write};

@@ -126,6 +126,7 @@ void write_22(const WriteJob& job) {
   write_opening(job, "2.2");
   write_nodes(job, meter);
   write_elements(job, meter);
+  write_periodic_22(job);
 }
 
 }  // namespace pcbmesh::formats::msh

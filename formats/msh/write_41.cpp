@@ -5,28 +5,6 @@
 namespace pcbmesh::formats::msh {
 namespace {
 
-/// Writes int, size_t and double as the mode wants them: packed, or followed by a blank.
-class Fields {
- public:
-  explicit Fields(const WriteJob& job) : sink_(job.sink), binary_(job.binary) {}
-  void integer(std::int32_t value) { field(value); }
-  void size(std::int64_t value) { field(static_cast<std::uint64_t>(value)); }
-  void real(double value) { field(value); }
-  void end_line() {
-    if (!binary_) sink_.put("\n");
-  }
-
- private:
-  template <class T>
-  void field(T value) {
-    if (binary_) return sink_.put_raw(value);
-    sink_.put_number(value);
-    sink_.put(" ");
-  }
-  FileSink& sink_;
-  bool binary_;
-};
-
 void write_entities(const WriteJob& job) {
   Fields out(job);
   job.sink.put("$Entities\n");
@@ -174,6 +152,7 @@ void write_41(const WriteJob& job) {
   write_entities(job);
   write_nodes(job, meter);
   write_elements(job, meter);
+  write_periodic_41(job);
 }
 
 }  // namespace pcbmesh::formats::msh

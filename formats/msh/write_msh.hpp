@@ -62,6 +62,28 @@ struct WriteJob {
   const Progress& progress;
 };
 
+/// Writes int, size_t and double of MSH 4.1 as the mode wants them: packed, or followed by a blank.
+class Fields {
+ public:
+  explicit Fields(const WriteJob& job) : sink_(job.sink), binary_(job.binary) {}
+  void integer(std::int32_t value) { field(value); }
+  void size(std::int64_t value) { field(static_cast<std::uint64_t>(value)); }
+  void real(double value) { field(value); }
+  void end_line() {
+    if (!binary_) sink_.put("\n");
+  }
+
+ private:
+  template <class T>
+  void field(T value) {
+    if (binary_) return sink_.put_raw(value);
+    sink_.put_number(value);
+    sink_.put(" ");
+  }
+  FileSink& sink_;
+  bool binary_;
+};
+
 /// MSH 4.1: one discrete entity per physical group, entity tag = physical tag, no points or curves; all nodes in one block.
 void write_41(const WriteJob& job);
 
@@ -71,6 +93,11 @@ void write_22(const WriteJob& job);
 
 /// @throws Error format_limit (703) beyond 2^31 - 1 nodes or elements.
 void require_fits_22(const mesh::MeshSource& source, const std::filesystem::path& file);
+
+/// $Periodic, behind the elements: each side of a periodic pair of a prism mesh with its partner, node by node; nothing where
+/// there is none. MSH 2.2 has it as text always. @throws Error internal (901) where partners don't match.
+void write_periodic_41(const WriteJob& job);
+void write_periodic_22(const WriteJob& job);
 
 /// Size of the file in bytes but for its few kB of headers; 0 for text, whose size nobody knows before.
 [[nodiscard]] std::uint64_t expected_bytes_41(const mesh::MeshSource& source, bool binary);

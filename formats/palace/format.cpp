@@ -10,6 +10,7 @@
 
 #include "formats/deck/deck_file.hpp"
 #include "formats/deck/limits.hpp"
+#include "formats/palace/tables.hpp"
 
 namespace pcbmesh::formats::palace {
 namespace {
@@ -20,15 +21,19 @@ using mesh::BoundaryCondition;
 constexpr double hz_per_ghz = 1e9;
 constexpr int element_order = 2;
 
-constexpr deck::Limits limits{.solver = "Palace",
-                              .solid_copper = false,
-                              .wave_ports = true,
-                              .coaxial_ports = true,
-                              .lossy_resonances = true,
-                              .floating_skins = true};
+constexpr deck::Limits limits{
+    .solver = "Palace", .solid_copper = false, .wave_ports = true, .coaxial_ports = true, .lossy_resonances = true};
 
 deck::FieldProblem state(const mesh::PrismMesh& mesh, const DeckOptions& options, Diagnostics& diagnostics) {
   deck::FieldProblem problem = deck::state_within(limits, mesh, options, 0, diagnostics);
+  std::string waves;
+  for (const deck::FieldPort& port : problem.ports)
+    if (port.port.kind == mesh::PortKind::wave) waves += (waves.empty() ? "" : ", ") + port.port.name;
+  if (!waves.empty() && options.problem == Problem::driven)
+    diagnostics.note("deck.wave_port_impedance",
+                     "S-parameters of wave ports refer to the impedance of their own mode, which changes with frequency; the "
+                     "Touchstone file can only state the impedance of the study: " +
+                         waves);
   for (const deck::FieldPort& port : problem.ports)
     if (port.port.kind == mesh::PortKind::wave)
       for (const deck::Face& face : problem.faces)
@@ -121,7 +126,8 @@ Json static_boundaries(const deck::FieldProblem& problem) {
   return out;
 }
 
-Json solver(const DeckOptions& options) {
+Json solver(const deck::FieldProblem& problem) {
+  const DeckOptions& options = problem.options;
   Json out{{"Order", element_order}, {"Device", "CPU"}};
   switch (options.problem) {
     case Problem::driven: {
@@ -133,12 +139,15 @@ Json solver(const DeckOptions& options) {
     case Problem::eigenmode:
       out["Eigenmode"] = {
           {"N", options.modes.number}, {"Target", options.modes.above_hz / hz_per_ghz}, {"Save", options.modes.number}};
+      // Skins make the eigenvalue problem non-linear, and Palace's own choice of method lost modes of a plain cavity.
+      if (!problem.faces_with(BoundaryCondition::conductor).empty()) out["Eigenmode"]["NonlinearType"] = "SLP";
       break;
     case Problem::electrostatic:
       out["Electrostatic"] = {{"Save", 0}};
       break;
   }
-  out["Linear"] = {{"Type", "Default"}, {"KSPType", "Default"}, {"Tol", 1e-8}, {"MaxIts", 500}};
+  // Residuals of 1e-8 left S12 and S21 1e-6 apart, which reads as a network that is not reciprocal.
+  out["Linear"] = {{"Type", "Default"}, {"KSPType", "Default"}, {"Tol", 1e-11}, {"MaxIts", 500}};
   return out;
 }
 
@@ -159,12 +168,24 @@ Deck write(const mesh::PrismMesh& mesh, const DeckOptions& options, const std::f
   out["Model"] = {{"Mesh", options.mesh}, {"L0", unit_m}, {"RefineCrackElements", false}};
   out["Domains"] = {{"Materials", materials(problem)}};
   out["Boundaries"] = options.problem == Problem::electrostatic ? static_boundaries(problem) : wave_boundaries(problem, unit_m);
-  out["Solver"] = solver(options);
+  out["Solver"] = solver(problem);
   Deck deck;
   deck::put_file(folder / (stem + ".palace.json"), out.dump(1, ' ', false, Json::error_handler_t::replace) + "\n", deck);
-  deck::put_run_script(folder / (stem + ".run.sh"), "Solves with Palace. NP: number of processes.",
-                       fmt::format("palace -np \"${{NP:-2}}\" {}\n", deck::shell_word(stem + ".palace.json")), deck);
-  deck.result = "postpro/" + stem;
+  const deck::ResultFiles results = deck::result_files(problem);
+  const std::string config = deck::shell_word(stem + ".palace.json");
+  deck::put_run_script(
+      folder / (stem + ".run.sh"),
+      fmt::format(
+          "Solves {} with Palace and ends in {}. PALACE: its launcher; NP: number of processes; ORDER: of the elements, "
+          "{} unless said; PCBMESH: where that is.",
+          deck::plain(options.mesh), deck::plain(results.final), element_order),
+      fmt::format("deck={0}\nif [ -n \"${{ORDER:-}}\" ]; then\n  deck={1}\n  sed \"/\\\"Solver\\\"/,\\$ s/\\\"Order\\\": "
+                  "[0-9]*/\\\"Order\\\": $ORDER/\" {0} > \"$deck\"\nfi\n\"${{PALACE:-palace}}\" -np \"${{NP:-2}}\" "
+                  "\"$deck\"\n{2}",
+                  config, deck::shell_word(stem + ".order.palace.json"), table_script(problem, "postpro/" + stem)),
+      deck);
+  deck.result = results.final;
+  deck.calls_pcbmesh = options.problem == Problem::driven;
   return deck;
 }
 

@@ -31,9 +31,10 @@ void take_first_answers(const StudyOptions& options, study::Study& study) {
   if (!study.sweep && study.problem == study::Problem::driven) study.sweep = study::Sweep{1e8, 1e10, 100, {}};
 }
 
-pipeline::StartedStudy settle_study(const board::Board& board, const StudyOptions& options, BegunStudy begun) {
+pipeline::StartedStudy settle_study(const board::Board& board, const StudyOptions& options, BegunStudy begun,
+                                    pipeline::PortPlaces places) {
   study::check(begun.study);
-  pipeline::StartedStudy started = pipeline::start_study(board, std::move(begun.study));
+  pipeline::StartedStudy started = pipeline::start_study(board, std::move(begun.study), places);
   started.study.solver = begun.solver;
   if (options.split.empty() && study::needs_tetrahedra(started.study)) started.study.split = study::ElementSplit::tetrahedra;
   if (begun.solver != study::Solver::none && started.study.problem == study::Problem::driven && started.study.ports.empty())

@@ -23,6 +23,7 @@ struct BegunStudy {
 void take_first_answers(const StudyOptions& options, study::Study& study);
 
 /// Ports in their places and the solver at its own, held against its demands. @throws Error as start_study() and check().
-[[nodiscard]] pipeline::StartedStudy settle_study(const board::Board& board, const StudyOptions& options, BegunStudy begun);
+[[nodiscard]] pipeline::StartedStudy settle_study(const board::Board& board, const StudyOptions& options, BegunStudy begun,
+                                                  pipeline::PortPlaces places = pipeline::PortPlaces::ends);
 
 }  // namespace pcbmesh::cli

@@ -26,16 +26,24 @@ struct Options {
   std::shared_ptr<StudyOptions> study;
 };
 
-pipeline::StartedStudy started_from(const Options& options, BegunStudy begun) {
+pipeline::StartedStudy started_from(const Options& options, BegunStudy begun, pipeline::PortPlaces places) {
   const Progress progress = terminal_progress(options.quiet);
   const formats::ReadBoardResult read = formats::read_board(options.board, options.from, progress);
-  pipeline::StartedStudy started = settle_study(read.board, *options.study, std::move(begun));
+  pipeline::StartedStudy started = settle_study(read.board, *options.study, std::move(begun), places);
   clear_progress();
   if (options.quiet) return started;
   print_diagnostics(read.diagnostics);
   print_diagnostics(started.diagnostics);
   for (const std::string& text : started.left_out) fmt::print(stderr, "no port at {}\n", text);
   return started;
+}
+
+void print_ports(std::FILE* to, const pipeline::StartedStudy& started) {
+  fmt::print(to, "{} ports\n", started.study.ports.size());
+  for (std::size_t i = 0; i < started.study.ports.size(); ++i) {
+    const study::Port& port = started.study.ports[i];
+    fmt::print(to, "  {:<6} net {} against {}: {}\n", port.name, port.net, port.reference, started.port_notes[i]);
+  }
 }
 
 int run_init(const Options& options) {
@@ -47,7 +55,7 @@ int run_init(const Options& options) {
   if (!options.force && std::filesystem::exists(file))
     throw Error(ErrorCode::write_failed, "the file exists; --force overwrites it", {.file = file.string()});
   take_first_answers(*options.study, begun.study);
-  const pipeline::StartedStudy started = started_from(options, std::move(begun));
+  const pipeline::StartedStudy started = started_from(options, std::move(begun), pipeline::PortPlaces::ends);
   const std::string note = fmt::format(
       "Begun for nets {}. Ports were placed where pins and planes allow; every field is explained in study.schema.json. Mesh "
       "it "
@@ -56,11 +64,7 @@ int run_init(const Options& options) {
   pipeline::write_text_file(file, study::to_json(started.study, {"study.schema.json", note, started.port_notes}));
   pipeline::write_text_file(schema, study::schema_text());
   if (!options.quiet) {
-    fmt::print("{} ports\n", started.study.ports.size());
-    for (std::size_t i = 0; i < started.study.ports.size(); ++i) {
-      const study::Port& port = started.study.ports[i];
-      fmt::print("  {:<6} net {} against {}: {}\n", port.name, port.net, port.reference, started.port_notes[i]);
-    }
+    print_ports(stdout, started);
     fmt::print("wrote {}\nwrote {}\nnext: pcbmesh mesh {} --study {} -o {}\n", file.string(), schema.string(), options.board,
                file.string(), file.stem().stem().string() + ".msh");
   }
@@ -75,7 +79,8 @@ int run_ports(const Options& options) {
                 "name the nets that ports are wanted for, e.g. --nets /USB_P,/USB_N; with --region they are cut "
                 "there");
   begun.study.ports.clear();
-  const pipeline::StartedStudy started = started_from(options, std::move(begun));
+  const pipeline::StartedStudy started = started_from(options, std::move(begun), pipeline::PortPlaces::ends_and_vias);
+  if (!options.quiet) print_ports(stderr, started);
   fmt::print("{}", study::ports_json(started.study, {"", "", started.port_notes}));
   return started.study.ports.empty() ? 1 : 0;
 }
@@ -106,7 +111,10 @@ Command add_ports_command(CLI::App& program) {
   CLI::App* command = program.add_subcommand("ports", "Propose ports of some nets, as JSON ready to paste into a study");
   const auto options = add_options(*command);
   command->footer(
-      "Ports are proposed at the pins of the nets, and, with --region, where the region cuts them.\n\n"
+      "Ports are proposed at the pins of the nets, and, with --region, where the region cuts them: vertical over a plane, "
+      "else\n"
+      "across a gap (P1, P2 ...). Coaxial ones (C1, C2 ...) are rings in the antipads that vias of the nets pass: leave out\n"
+      "those that are not wanted, or a line gets a port in its middle.\n\n"
       "Examples:\n  pcbmesh ports board.kicad_pcb --nets /USB_P,/USB_N\n"
       "  pcbmesh ports board.kicad_pcb --study s.json --nets /CLK --region 10mm,-30mm,25mm,-18mm");
   return {command, [options] { return run_ports(*options); }};

@@ -30,6 +30,17 @@ geometry::Box parse_box(const std::string& text) {
   return box;
 }
 
+geometry::Ring parse_polygon(const std::string& text) {
+  const std::vector<std::string> parts = split_at_commas(text);
+  if (parts.size() < 6 || parts.size() % 2 != 0)
+    throw Error(ErrorCode::usage, fmt::format("--polygon '{}': expected at least three corners x1,y1,x2,y2,x3,y3 ..., e.g. "
+                                              "10mm,5mm,30mm,5mm,20mm,20mm; {} lengths were given",
+                                              text, parts.size()));
+  geometry::Ring ring;
+  for (std::size_t i = 0; i < parts.size(); i += 2) ring.push_back({parse_length(parts[i]), parse_length(parts[i + 1])});
+  return ring;
+}
+
 }  // namespace
 
 std::shared_ptr<StudyOptions> add_study_options(CLI::App& command) {
@@ -37,10 +48,18 @@ std::shared_ptr<StudyOptions> add_study_options(CLI::App& command) {
   constexpr const char* region = "Region of interest";
   command.add_option("--study", o->file, "Study JSON; flags override its fields")->check(CLI::ExistingFile)->group(region);
   command
-      .add_option("--nets", o->nets, "Mesh around these nets, e.g. /USB_P,/USB_N; with --region: the nets of interest in it")
+      .add_option("--nets", o->nets,
+                  "Mesh around these nets, e.g. /USB_P,/USB_N; with --region or --polygon: the nets of interest in it")
       ->group(region);
   command.add_option("--margin", o->margin, "Growth of the nets' bounding box (default 2mm)")->group(region);
-  command.add_option("--region", o->region, "Mesh a box: xmin,ymin,xmax,ymax; y is up, as inspect prints it")->group(region);
+  CLI::Option* box =
+      command.add_option("--region", o->region, "Mesh a box: xmin,ymin,xmax,ymax; y is up, as inspect prints it")
+          ->group(region);
+  command
+      .add_option("--polygon", o->polygon,
+                  "Mesh inside a polygon: its corners x1,y1,x2,y2,x3,y3 ... along the outline; y is up")
+      ->excludes(box)
+      ->group(region);
   constexpr const char* domain = "Conductors and air";
   command
       .add_option("--conductors", o->conductors,
@@ -124,6 +143,10 @@ study::Study unchecked_study_from(const StudyOptions& o) {
   if (!o.region.empty()) {
     s.region = study::RegionKind::box;
     s.box = parse_box(o.region);
+  }
+  if (!o.polygon.empty()) {
+    s.region = study::RegionKind::polygon;
+    s.polygon = parse_polygon(o.polygon);
   }
   if (!o.conductors.empty()) s.conductors = study::parse_conductor_mode(o.conductors);
   for (const std::string& text : o.hollow) s.conductor_rules.push_back(conductor_rule(text, study::ConductorMode::hollow));

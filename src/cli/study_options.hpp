@@ -14,7 +14,7 @@ namespace pcbmesh::cli {
 
 /// The flags of a study, as typed. A study file comes first; flags override its fields.
 struct StudyOptions {
-  std::string file, nets, margin, region, conductors, air, air_above, air_below, air_around, frequency, longest_edge,
+  std::string file, nets, margin, region, polygon, conductors, air, air_above, air_below, air_around, frequency, longest_edge,
       edge_at_copper, seed, policy, sublayers, tolerance, arc_sagitta, unit, split, problem, solver, sweep;
   std::vector<std::string> hollow, solid, sheet, ports, boundaries;
   bool smooth = false, paper_compat = false;

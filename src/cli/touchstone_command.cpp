@@ -16,10 +16,9 @@ namespace {
 struct Options {
   std::string results, output;
   double impedance = 0;
+  double tolerance = 1e-6;  // of a direct solution; what is above has another cause than rounding
   bool quiet = false;
 };
-
-constexpr double tolerance = 1e-6;  // of a direct solution; what is above has another cause than rounding
 
 std::string verdict(bool holds, const char* name) {
   return fmt::format("{}{}", holds ? "" : "NOT ", name);
@@ -35,7 +34,7 @@ int run(const Options& options) {
   if (changed) sweep = renormalised(sweep, wanted);
   const NetworkCheck check = check_network(sweep);
   write_touchstone(sweep, options.output);
-  const bool passive = check.largest_gain <= 1 + tolerance, reciprocal = check.asymmetry <= tolerance;
+  const bool passive = check.largest_gain <= 1 + options.tolerance, reciprocal = check.asymmetry <= options.tolerance;
   if (!options.quiet) {
     fmt::print("{}: {} ports, {} frequencies from {:.6g} to {:.6g} Hz, {} ohm{}\n", options.output, sweep.ports.size(),
                sweep.frequencies_hz.size(), sweep.frequencies_hz.front(), sweep.frequencies_hz.back(), wanted,
@@ -55,13 +54,16 @@ Command add_touchstone_command(CLI::App& program) {
   CLI::App* command =
       program.add_subcommand("touchstone", "Turn a solver's port results into a Touchstone file, and judge them");
   auto options = std::make_shared<Options>();
-  command->add_option("results", options->results, "Port results of a GetDP deck (x.ports.txt)")->required();
+  command->add_option("results", options->results, "Port results of a deck (x.ports.txt)")->required();
   command->add_option("-o,--output", options->output, "Touchstone file, .s1p, .s2p ...")->required();
   command->add_option("--impedance", options->impedance, "Reference impedance in ohm (default: of the first port)")
       ->check(CLI::PositiveNumber);
+  command->add_option("--tolerance", options->tolerance, "How far a network may be from passive and reciprocal")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   command->add_flag("--quiet", options->quiet, "Print errors alone");
   command->footer(
-      "Exit code 1 if the network is not passive or not reciprocal to 1e-6; the file is written all the same.\n\n"
+      "Exit code 1 if the network is not passive or not reciprocal within the tolerance; the file is written all the same.\n\n"
       "Example:\n"
       "  pcbmesh touchstone out/board.ports.txt -o out/board.s2p");
   return {command, [options] { return run(*options); }};

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -19,6 +21,7 @@
 #include "src/compose/holes.hpp"
 #include "src/compose/mask.hpp"
 #include "src/compose/materials.hpp"
+#include "src/compose/port_clearance.hpp"
 #include "src/compose/ports.hpp"
 #include "src/compose/shell.hpp"
 #include "src/compose/stack.hpp"
@@ -184,16 +187,20 @@ ResolvedNames resolve_names(const Board& board, const Study& study, MaterialTabl
     if (!resolved.any_layer) resolved.copper_layer = resolver.copper_layer(rule.layer);
     names.rules.push_back(resolved);
   }
-  for (const study::Port& port : study.ports) {
-    (void)resolver.net(port.net);
-    if (!port.reference.empty()) (void)resolver.net(port.reference);
-    if (!port.at.layer.empty()) (void)resolver.copper_layer(port.at.layer);
-  }
   const std::string known_so_far = resolver.text();
   names.holes = resolve_holes(study.fabrication, resolver, materials);
   names.fills = resolve_fills(board, study.fabrication, resolver, materials);
   const std::string unknown = resolver.text();
   if (!unknown.empty()) names.faults.push_back({"", unknown});
+  for (std::size_t i = 0; i < study.ports.size(); ++i) {
+    const study::Port& port = study.ports[i];
+    NameResolver of_port(board);
+    (void)of_port.net(port.net);
+    if (!port.reference.empty()) (void)of_port.net(port.reference);
+    if (!port.at.layer.empty()) (void)of_port.copper_layer(port.at.layer);
+    if (const std::string text = of_port.text(); !text.empty())
+      names.faults.push_back({fmt::format("/ports/{}", i), fmt::format("port '{}': {}", port.name, text)});
+  }
   if (!materials.unknown().empty()) names.faults.push_back({"/materials/use", materials.unknown()});
   if (unknown == known_so_far) check_backdrills(board, study, names.holes, names.faults);
   // Where only terminals of ports are unknown, the other ports can be looked at.
@@ -241,39 +248,40 @@ void gather(std::vector<study::Fault>& faults, Step&& step) {
   }
 }
 
-/// Everything that is wrong with a study, by itself and on this board.
-/// @throws Error that names it all, of the code of the first.
-void require_no_faults(const Board& board, const Study& study, const ResolvedNames& names, const MaterialTable& materials) {
-  const std::vector<study::Fault> of_study = study::faults_of(study);
-  std::vector<study::Fault> without;
-  if (study.solver != study::Solver::none) without = materials.layers_without_permittivity(board);
-  if (of_study.empty() && names.faults.empty() && without.empty()) return;
-  std::vector<study::Fault> all = of_study;
-  all.insert(all.end(), names.faults.begin(), names.faults.end());
-  all.insert(all.end(), without.begin(), without.end());
-  if (!names.must_stop && std::ranges::none_of(of_study, is_about_geometry)) {
-    // What is told here is told again by nobody: diagnostics of a domain that is not built are dropped.
-    Diagnostics ignored;
-    gather(all, [&] {
-      const Footprint footprint = build_footprint(board, study, names.nets, ignored);
-      MaterialTable again(board, study, ignored);
-      const Stack stack =
-          build_stack(board, study, find_sheet_layers(board, study, names.rules, footprint), names.fills, again, ignored);
-      model::ModelParts parts;
-      add_ports(board, study, names.rules, footprint, stack, parts, all);
-    });
+/// Everything that is wrong with a study, by itself and on this board, before its domain is built.
+struct KnownFaults {
+  std::vector<study::Fault> of_study, of_layers;
+  const ResolvedNames& names;
+
+  KnownFaults(const Board& board, const Study& study, const ResolvedNames& resolved, const MaterialTable& materials)
+      : of_study(study::faults_of(study)), names(resolved) {
+    if (study.solver != study::Solver::none) of_layers = materials.layers_without_permittivity(board);
   }
-  const bool only_permittivity = of_study.empty() && names.faults.empty() && all.size() == without.size();
-  throw Error(only_permittivity ? ErrorCode::stackup_invalid : code_of(of_study, names), study::text_of(all),
-              {.file = board.source()});
+  [[nodiscard]] bool is_empty() const { return of_study.empty() && of_layers.empty() && names.faults.empty(); }
+  /// Whether the domain is in doubt, so that ports can't be looked at.
+  [[nodiscard]] bool must_stop() const { return names.must_stop || std::ranges::any_of(of_study, is_about_geometry); }
+  /// @throws Error that names these and `more`, of the code of the first.
+  [[noreturn]] void refuse(const std::string& source, std::span<const study::Fault> more) const {
+    std::vector<study::Fault> all = of_study;
+    all.insert(all.end(), names.faults.begin(), names.faults.end());
+    all.insert(all.end(), of_layers.begin(), of_layers.end());
+    const bool only_layers = all.size() == of_layers.size() && !all.empty() && more.empty();
+    all.insert(all.end(), more.begin(), more.end());
+    throw Error(only_layers ? ErrorCode::stackup_invalid : code_of(of_study, names), study::text_of(all), {.file = source});
+  }
+};
+
+/// Nets that the study names for their own sake: those of the region, and those with ports, whose faces no snapping may bend.
+std::vector<std::int32_t> nets_of_interest(const Board& board, const Study& study, const ResolvedNames& names) {
+  std::vector<std::int32_t> nets = names.nets;
+  for (const study::Port& port : study.ports)
+    if (const auto net = board.find_net(port.net); net && std::ranges::find(nets, *net) == nets.end()) nets.push_back(*net);
+  return nets;
 }
 
-}  // namespace
-
-model::Model compose(const Board& board, const Study& study, Diagnostics& diagnostics) {
-  MaterialTable materials(board, study, diagnostics);
-  const ResolvedNames names = resolve_names(board, study, materials);
-  require_no_faults(board, study, names, materials);
+/// The domain, with those of its ports that can be placed. What is wrong with ports goes into `faults`.
+model::Model build(const Board& board, const Study& study, const ResolvedNames& names, MaterialTable materials,
+                   std::vector<study::Fault>& faults, Diagnostics& diagnostics) {
   const Footprint footprint = build_footprint(board, study, names.nets, diagnostics);
   Stack stack =
       build_stack(board, study, find_sheet_layers(board, study, names.rules, footprint), names.fills, materials, diagnostics);
@@ -281,7 +289,7 @@ model::Model compose(const Board& board, const Study& study, Diagnostics& diagno
   model::ModelParts parts;
   parts.source = board.source();
   parts.nets.assign(board.nets().begin(), board.nets().end());
-  parts.nets_of_interest = names.nets;
+  parts.nets_of_interest = nets_of_interest(board, study, names);
   add_domain_and_board(footprint, stack, parts);
   measure_narrowest(board, footprint, parts);
   add_copper(board, study, names.rules, footprint, stack, parts, diagnostics);
@@ -290,9 +298,7 @@ model::Model compose(const Board& board, const Study& study, Diagnostics& diagno
   if (study.paper_compat) keep_every_outline(parts);
   if (study.order == 2) add_circles(board, study, footprint, parts);
   add_shell(study, footprint, stack, parts);
-  std::vector<study::Fault> faults;
   add_ports(board, study, names.rules, footprint, stack, parts, faults);
-  if (!faults.empty()) throw Error(ErrorCode::port_invalid, study::text_of(faults), {.file = board.source()});
   const auto boundaries = study::resolved_boundaries(study);
   for (std::size_t i = 0; i < study::num_hull_sides; ++i) parts.sides[i] = side_condition(boundaries[i]);
   if (study.region == study::RegionKind::polygon) {
@@ -307,17 +313,56 @@ model::Model compose(const Board& board, const Study& study, Diagnostics& diagno
     diagnostics.warn("compose.no_copper", "the domain holds no copper", {.file = board.source()});
   parts.materials = materials.take();
   parts.slabs = std::move(stack.slabs);
-  return model::Model::from_parts(std::move(parts));
+  model::Model model = model::Model::from_parts(std::move(parts));
+  for (study::Fault& fault : port_faults(model))
+    if (std::ranges::find(faults, fault.field, &study::Fault::field) == faults.end()) faults.push_back(std::move(fault));
+  return model;
 }
 
-std::vector<PortProposal> propose_ports(const Board& board, const Study& study, Diagnostics& diagnostics) {
+}  // namespace
+
+model::Model compose(const Board& board, const Study& study, Diagnostics& diagnostics) {
   MaterialTable materials(board, study, diagnostics);
   const ResolvedNames names = resolve_names(board, study, materials);
-  require_no_faults(board, study, names, materials);
+  const KnownFaults known(board, study, names, materials);
+  std::vector<study::Fault> faults;  // that only the domain shows
+  std::optional<model::Model> model;
+  if (known.is_empty()) {
+    model = build(board, study, names, std::move(materials), faults, diagnostics);
+  } else if (!known.must_stop()) {
+    // All in one run. What is told here is told again by nobody: diagnostics of a domain that is not meshed are dropped.
+    Diagnostics ignored;
+    gather(faults, [&] { (void)build(board, study, names, std::move(materials), faults, ignored); });
+  }
+  if (!known.is_empty() || !faults.empty()) known.refuse(board.source(), faults);
+  return std::move(*model);
+}
+
+std::vector<PortProposal> propose_ports(const Board& board, const Study& study, PortPlaces places, Diagnostics& diagnostics) {
+  MaterialTable materials(board, study, diagnostics);
+  const ResolvedNames names = resolve_names(board, study, materials);
+  if (const KnownFaults known(board, study, names, materials); !known.is_empty()) known.refuse(board.source(), {});
   const Footprint footprint = build_footprint(board, study, names.nets, diagnostics);
+  Diagnostics ignored;  // the domain is built again with the ports in it
+  MaterialTable again(board, study, ignored);
   const Stack stack =
       build_stack(board, study, find_sheet_layers(board, study, names.rules, footprint), names.fills, materials, diagnostics);
-  return find_ports(board, study, names.rules, footprint, stack, names.nets);
+  std::vector<PortProposal> proposals = find_ports(board, study, names.rules, footprint, stack, names.nets, places);
+  // Held against the finished domain, so that what is proposed can be meshed.
+  Study with = study;
+  with.ports.clear();
+  for (const PortProposal& proposal : proposals)
+    if (proposal.why_not.empty()) with.ports.push_back(proposal.port);
+  std::vector<study::Fault> faults;
+  (void)build(board, with, names, std::move(again), faults, ignored);
+  std::size_t number = 0;
+  for (PortProposal& proposal : proposals) {
+    if (!proposal.why_not.empty()) continue;
+    const auto fault = std::ranges::find(faults, fmt::format("/ports/{}", number++), &study::Fault::field);
+    if (fault != faults.end()) proposal.why_not = fault->text;
+  }
+  name_ports(proposals);
+  return proposals;
 }
 
 }  // namespace pcbmesh::compose

@@ -54,7 +54,7 @@ class HoleBuilder {
       else
         add_plated(drill, rings);
     }
-    append_unplated();
+    append_air(unplated_, "hole", BodyKind::hole, hole_priority);
     append_barrels();
     append_cores();
     append_backdrilled();
@@ -183,17 +183,18 @@ class HoleBuilder {
             span.first == 0 ? stack_.last_board_slab : top_slab(span.first)};
   }
 
-  void append_unplated() {
-    for (auto& [span, shapes] : unplated_) {
+  /// Air right through, one body per span.
+  void append_air(Grouped<Span>& groups, std::string_view name, BodyKind kind, std::int32_t priority) {
+    for (auto& [span, shapes] : groups) {
       const SlabRange slabs = through(span);
       if (slabs.last < slabs.first) continue;  // within one layer that has no slab
       append_body(parts_,
-                  {.name = fmt::format("hole {} to {}", board_.copper_name(span.first), board_.copper_name(span.second)),
-                   .kind = BodyKind::hole,
+                  {.name = fmt::format("{} {} to {}", name, board_.copper_name(span.first), board_.copper_name(span.second)),
+                   .kind = kind,
                    .material = stack_.air,
                    .first_slab = slabs.first,
                    .last_slab = slabs.last,
-                   .priority = hole_priority},
+                   .priority = priority},
                   std::move(shapes));
     }
   }
@@ -229,18 +230,7 @@ class HoleBuilder {
   }
 
   void append_backdrilled() {
-    for (auto& [span, shapes] : backdrilled_) {
-      const SlabRange slabs = through(span);
-      if (slabs.last < slabs.first) continue;  // within one layer that has no slab
-      append_body(parts_,
-                  {.name = fmt::format("backdrill {} to {}", board_.copper_name(span.first), board_.copper_name(span.second)),
-                   .kind = BodyKind::filler,
-                   .material = stack_.air,
-                   .first_slab = slabs.first,
-                   .last_slab = slabs.last,
-                   .priority = backdrill_priority},
-                  std::move(shapes));
-    }
+    append_air(backdrilled_, "backdrill", BodyKind::filler, backdrill_priority);
     if (!plan_.backdrills.empty() && num_backdrilled_ == 0)
       diagnostics_.warn("compose.backdrill_unused", "no plated hole in the domain spans the layers of the study's backdrills",
                         {.file = board_.source()});

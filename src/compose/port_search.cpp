@@ -60,8 +60,8 @@ Reference PortSearch::look(const Terminals& nets, std::int32_t layer, const Sect
       return found;
     }
     if (!any.empty()) {
-      found.reason = fmt::format("copper of net '{}' on {} {} it covers its rectangle in part or is no plane",
-                                 board_.net_name(any.front()), board_.copper_name(other), where);
+      found.reason = fmt::format("copper of net '{}' on {} {} it {}", board_.net_name(any.front()), board_.copper_name(other),
+                                 where, nets.negative ? "is in between" : "covers its rectangle in part or is no plane");
       return found;
     }
   }

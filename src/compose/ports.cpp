@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "src/compose/port_placer.hpp"
+#include "src/compose/port_words.hpp"
 
 namespace pcbmesh::compose {
 
@@ -58,10 +59,15 @@ void add_ports(const board::Board& board, const study::Study& study, const std::
 
 namespace {
 
-/// Pads and cuts of a net where a port may be, and what to call the place.
+bool is_coaxial(const study::Port& port) {
+  return port.shape == study::PortShape::coaxial;
+}
+
+/// Pads, cuts and vias of a net where a port may be, and what to call the place.
 struct Candidate {
   study::PortPlace at;
   std::string about;
+  study::PortShape shape = study::PortShape::automatic;
 };
 
 std::vector<Candidate> candidates_of(const board::Board& board, const study::Study& study, std::int32_t net,
@@ -83,6 +89,21 @@ std::vector<Candidate> candidates_of(const board::Board& board, const study::Stu
   return candidates;
 }
 
+/// Every layer that a plated hole of the net passes, as a coaxial port; most have no antipad.
+void add_vias(const board::Board& board, std::int32_t net, const Footprint& footprint, std::vector<Candidate>& candidates) {
+  std::vector<geometry::Point> met;
+  for (const board::Drill& drill : board.drills()) {
+    if (!drill.plated || drill.net != net || drill.figure.path.points.size() != 1) continue;
+    const geometry::Point centre = drill.figure.path.points.front();
+    if (!footprint.contains(centre) || std::ranges::count(met, centre) > 0) continue;
+    met.push_back(centre);
+    for (std::int32_t layer = drill.first_copper; layer <= drill.last_copper; ++layer)
+      candidates.push_back({{.point = centre, .layer = board.copper_name(layer)},
+                            fmt::format("the via at {}, in its antipad on {}", place_text(centre), board.copper_name(layer)),
+                            study::PortShape::coaxial});
+  }
+}
+
 bool is_plane(const board::Board& board, std::int32_t net) {
   return std::ranges::any_of(
       board.shapes(), [&](const board::Shape& shape) { return shape.net == net && shape.kind == board::ShapeKind::fill; });
@@ -92,25 +113,34 @@ bool is_plane(const board::Board& board, std::int32_t net) {
 
 std::vector<PortProposal> find_ports(const board::Board& board, const study::Study& study,
                                      const std::vector<ResolvedRule>& rules, const Footprint& footprint, const Stack& stack,
-                                     std::span<const std::int32_t> nets) {
+                                     std::span<const std::int32_t> nets, PortPlaces places) {
   const PortPlacer placer(board, study, rules, footprint, stack);
   std::vector<PortProposal> proposals;
   std::vector<Placed> placed;
   for (const std::int32_t net : nets) {
     const std::string name(board.net_name(net));
     if (is_plane(board, net)) {
-      proposals.push_back({{.name = "", .net = name, .at = {}}, "", "a net with filled areas is a reference, not a line"});
+      proposals.push_back({.port = {.name = "", .net = name, .at = {}},
+                           .about = "",
+                           .why_not = "a net with filled areas is a reference, not a line"});
       continue;
     }
-    for (Candidate& candidate : candidates_of(board, study, net, footprint)) {
-      PortProposal proposal{{.name = "P", .net = name, .at = std::move(candidate.at)}, candidate.about, ""};
+    std::vector<Candidate> candidates = candidates_of(board, study, net, footprint);
+    if (places == PortPlaces::ends_and_vias) add_vias(board, net, footprint, candidates);
+    for (Candidate& candidate : candidates) {
+      PortProposal proposal{.port = {.name = "P", .net = name, .at = std::move(candidate.at), .shape = candidate.shape},
+                            .about = candidate.about};
       Outcome outcome = placer.place(proposal.port);
-      // A net that ends inside has no cut: that needs no word.
+      // A net that ends inside has no cut, and a layer without a plane no antipad: that needs no word.
       if (!outcome.placed && proposal.port.at.side && outcome.fault.find("is not cut") != std::string::npos) continue;
+      if (!outcome.placed && is_coaxial(proposal.port) && outcome.fault.find("no copper surrounds") != std::string::npos)
+        continue;
       proposal.why_not = outcome.fault;
       if (outcome.placed) {
-        proposal.port.reference = board.net_name(outcome.placed->port.negative_net);
-        proposal.at_mm = {outcome.placed->port.at_m[0] * 1e3, outcome.placed->port.at_m[1] * 1e3};
+        const model::Port& found = outcome.placed->port;
+        proposal.port.reference = board.net_name(found.negative_net);
+        proposal.how = found.is_coaxial ? "coaxial" : found.faces == model::PortFaces::wall ? "vertical" : "gap";
+        proposal.at_mm = {found.at_m[0] * 1e3, found.at_m[1] * 1e3};
         for (const Placed& other : placed)
           if (overlap(*outcome.placed, other)) proposal.why_not = "another port is there already";
         if (proposal.why_not.empty()) placed.push_back(std::move(*outcome.placed));
@@ -127,12 +157,18 @@ std::vector<PortProposal> find_ports(const board::Board& board, const study::Stu
   };
   std::stable_sort(proposals.begin(), proposals.end(), [&](const PortProposal& a, const PortProposal& b) {
     if (a.why_not.empty() != b.why_not.empty()) return a.why_not.empty();
+    if (is_coaxial(a.port) != is_coaxial(b.port)) return is_coaxial(b.port);
     return a.why_not.empty() && quarter(a) < quarter(b);
   });
-  int number = 0;
-  for (PortProposal& proposal : proposals)
-    if (proposal.why_not.empty()) proposal.port.name = fmt::format("P{}", ++number);
+  name_ports(proposals);
   return proposals;
+}
+
+void name_ports(std::vector<PortProposal>& proposals) {
+  int ends = 0, rings = 0;
+  for (PortProposal& proposal : proposals)
+    if (proposal.why_not.empty())
+      proposal.port.name = is_coaxial(proposal.port) ? fmt::format("C{}", ++rings) : fmt::format("P{}", ++ends);
 }
 
 }  // namespace pcbmesh::compose

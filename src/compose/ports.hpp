@@ -20,9 +20,12 @@ namespace pcbmesh::compose {
 void add_ports(const board::Board& board, const study::Study& study, const std::vector<ResolvedRule>& rules,
                const Footprint& footprint, const Stack& stack, model::ModelParts& parts, std::vector<study::Fault>& faults);
 
-/// Every pin of the nets in the domain, and every cut, as a lumped port to the plane found there, or why not.
+/// Every place of the nets where a port may be, with the port found there or why there is none; those found first, end by end.
 [[nodiscard]] std::vector<PortProposal> find_ports(const board::Board& board, const study::Study& study,
                                                    const std::vector<ResolvedRule>& rules, const Footprint& footprint,
-                                                   const Stack& stack, std::span<const std::int32_t> nets);
+                                                   const Stack& stack, std::span<const std::int32_t> nets, PortPlaces places);
+
+/// Names those that can be placed, in their order.
+void name_ports(std::vector<PortProposal>& proposals);
 
 }  // namespace pcbmesh::compose

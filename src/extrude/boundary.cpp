@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <span>
 #include <string>
 #include <tuple>
@@ -20,6 +19,7 @@
 namespace pcbmesh::extrude {
 namespace {
 
+using mesh::PlanarEdge;
 using mesh::PlanarMesh;
 
 std::size_t index(std::int32_t i) {
@@ -34,42 +34,11 @@ bool is_hollow(const model::Label& label) {
 }
 
 /// Edges between triangles of different regions and edges of the outline, ordered by lower vertex.
-std::vector<SharedEdge> region_edges(const PlanarMesh& planar) {
-  struct HalfEdge {
-    std::int32_t high = 0, triangle = 0;
-    bool ascends = false;  ///< runs from the lower to the higher vertex
-  };
-  const auto triangles = planar.triangles();
-  std::vector<std::int64_t> starts(index(planar.num_points()) + 1, 0);
-  const auto visit_edges = [&](auto&& visit) {
-    for (std::int32_t t = 0; t < planar.num_triangles(); ++t) {
-      const auto& corners = triangles[index(t)];
-      for (std::size_t i = 0; i < 3; ++i) visit(t, corners[i], corners[i == 2 ? 0 : i + 1]);
-    }
-  };
-  visit_edges([&](std::int32_t, std::int32_t a, std::int32_t b) { ++starts[index(std::min(a, b)) + 1]; });
-  std::partial_sum(starts.begin(), starts.end(), starts.begin());
-  std::vector<HalfEdge> half_edges(static_cast<std::size_t>(starts.back()));
-  std::vector<std::int64_t> next(starts.begin(), starts.end() - 1);
-  visit_edges([&](std::int32_t t, std::int32_t a, std::int32_t b) {
-    half_edges[static_cast<std::size_t>(next[index(std::min(a, b))]++)] = {std::max(a, b), t, a < b};
+std::vector<PlanarEdge> region_edges(const PlanarMesh& planar) {
+  std::vector<PlanarEdge> edges;
+  mesh::visit_planar_edges(planar, [&](const PlanarEdge& edge) {
+    if (edge.right < 0 || planar.regions()[index(edge.left)] != planar.regions()[index(edge.right)]) edges.push_back(edge);
   });
-  std::vector<SharedEdge> edges;
-  for (std::int32_t low = 0; low < planar.num_points(); ++low) {
-    const auto first = half_edges.begin() + starts[index(low)], last = half_edges.begin() + starts[index(low) + 1];
-    std::sort(first, last,
-              [](const HalfEdge& p, const HalfEdge& q) { return std::tie(p.high, p.triangle) < std::tie(q.high, q.triangle); });
-    for (auto here = first; here != last;) {
-      const auto mate = here + 1;
-      const bool has_mate = mate != last && mate->high == here->high;
-      PCBMESH_ASSERT(!has_mate || (mate->ascends != here->ascends && (mate + 1 == last || (mate + 1)->high != here->high)));
-      const std::int32_t right = has_mate ? mate->triangle : -1;
-      if (!has_mate || planar.regions()[index(here->triangle)] != planar.regions()[index(right)]) {
-        edges.push_back({here->ascends ? low : here->high, here->ascends ? here->high : low, here->triangle, right});
-      }
-      here = has_mate ? mate + 1 : mate;
-    }
-  }
   return edges;
 }
 
@@ -147,7 +116,7 @@ class BoundaryFinder {
   }
 
   /// In order of slab.
-  [[nodiscard]] std::vector<mesh::Wall> walls(const std::vector<SharedEdge>& edges) const {
+  [[nodiscard]] std::vector<mesh::Wall> walls(const std::vector<PlanarEdge>& edges) const {
     std::vector<std::int32_t> port_of_edge(edges.size(), -1);
     for (std::size_t e = 0; e < edges.size(); ++e) port_of_edge[e] = ports_.on_line(edges[e]);
     std::vector<mesh::Wall> walls;
@@ -166,10 +135,10 @@ class BoundaryFinder {
   }
 
  private:
-  [[nodiscard]] const model::Label& left_of(const SharedEdge& edge, std::int32_t slab) const {
+  [[nodiscard]] const model::Label& left_of(const PlanarEdge& edge, std::int32_t slab) const {
     return columns_.at(parts_.planar.regions()[index(edge.left)], slab);
   }
-  [[nodiscard]] const model::Label& right_of(const SharedEdge& edge, std::int32_t slab) const {
+  [[nodiscard]] const model::Label& right_of(const PlanarEdge& edge, std::int32_t slab) const {
     return edge.right < 0 ? outside_ : columns_.at(parts_.planar.regions()[index(edge.right)], slab);
   }
 
@@ -189,7 +158,7 @@ class BoundaryFinder {
     return face == box_.first_slab ? zmin : side;
   }
 
-  [[nodiscard]] std::int32_t wall_tag(const SharedEdge& edge, std::int32_t slab, const model::Label& left,
+  [[nodiscard]] std::int32_t wall_tag(const PlanarEdge& edge, std::int32_t slab, const model::Label& left,
                                       const model::Label& right, std::int32_t port) const {
     const bool is_inner = !left.is_void() && !right.is_void();
     if (left.is_void() && right.is_void()) return -1;
@@ -209,7 +178,7 @@ class BoundaryFinder {
   const TagSpace& tags_;
   const PortFootprints& ports_;
   /// Side of a polygonal domain on which an outer edge lies; `side` if none.
-  [[nodiscard]] std::int32_t side_of_outline(const SharedEdge& edge) const {
+  [[nodiscard]] std::int32_t side_of_outline(const PlanarEdge& edge) const {
     const auto outline = model_.outline();
     if (edge.right >= 0) return side;
     for (std::size_t i = 0; i < outline.size(); ++i)
@@ -270,7 +239,7 @@ void measure_faces(mesh::PrismMeshParts& parts) {
 void add_boundary(mesh::PrismMeshParts& parts, const Columns& columns, const model::Model& model) {
   const TagSpace tags(model);
   const PortFootprints ports(parts.planar, model);
-  const std::vector<SharedEdge> edges = region_edges(parts.planar);
+  const std::vector<PlanarEdge> edges = region_edges(parts.planar);
   const BoundaryFinder finder(parts, columns, model, tags, ports);
   parts.caps = finder.caps();
   parts.walls = finder.walls(edges);

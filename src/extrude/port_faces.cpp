@@ -32,12 +32,12 @@ struct Found {
 class PortCheck {
  public:
   PortCheck(const mesh::PrismMeshParts& parts, const Columns& columns, const model::Model& model, const PortFootprints& ports,
-            const std::vector<SharedEdge>& edges)
+            const std::vector<mesh::PlanarEdge>& edges)
       : parts_(parts), columns_(columns), model_(model), ports_(ports), found_(model.ports().size()) {
     for (std::size_t t = 0; t < parts.face_tags.size(); ++t)
       if (const std::int32_t port = parts.face_tags[t].port; port >= 0) found_[index(port)].tag = static_cast<std::int32_t>(t);
     count_faces(edges);
-    for (const SharedEdge& edge : edges) measure_edge(edge);
+    for (const mesh::PlanarEdge& edge : edges) measure_edge(edge);
   }
 
   [[nodiscard]] bool is_inner(std::size_t port) const { return found_[port].num_inner > 0; }
@@ -47,15 +47,18 @@ class PortCheck {
   [[nodiscard]] std::string fault(std::size_t number) const {
     const model::Port& port = model_.ports()[number];
     const Found& found = found_[number];
-    if (found.tag < 0) return "has no face in the mesh: it lies in copper or outside the domain; move it";
+    if (found.tag < 0)
+      return "has no face in the mesh: another outline runs within the tolerance of it, or it lies in copper; move it or give "
+             "a smaller tolerance";
     if (found.num_inner > 0 && found.num_outer > 0)
       return "lies on the hull in part; move it inside, or put it on the side itself";
     if (port.is_wave) return found.num_inner > 0 ? "must be on the hull; give a side of the region" : "";
     const double wanted = port.area_m2, area = parts_.face_tags[index(found.tag)].area_m2;
     if (std::abs(area - wanted) > relative_tolerance * wanted)
       return fmt::format(
-          "covers {:.4g} mm2 where its {} has {:.4g} mm2: something stands in it, or it lies over an edge; "
-          "move it or make it narrower",
+          "covers {:.4g} mm2 where its {} has {:.4g} mm2: something stands in it, or an outline within the tolerance of it has "
+          "moved it; "
+          "move it, make it narrower or give a smaller tolerance",
           area * 1e6, port.is_coaxial ? "ring" : "rectangle", wanted * 1e6);
     for (const auto& [length, edge, net, end] :
          {std::tuple{found.positive_m, port.positive_edge_m, port.positive_net, "positive"},
@@ -67,7 +70,7 @@ class PortCheck {
   }
 
  private:
-  void count_faces(const std::vector<SharedEdge>& edges) {
+  void count_faces(const std::vector<mesh::PlanarEdge>& edges) {
     const auto num_slabs = columns_.num_slabs();
     const auto slab_of = parts_.plan.slab_of_sublayer();
     for (const mesh::Cap& cap : parts_.caps) {
@@ -82,7 +85,7 @@ class PortCheck {
     for (const mesh::Wall& wall : parts_.walls) {
       const std::int32_t port = parts_.face_tags[index(wall.tag)].port;
       if (port < 0) continue;
-      const auto edge = std::find_if(edges.begin(), edges.end(), [&](const SharedEdge& e) {
+      const auto edge = std::find_if(edges.begin(), edges.end(), [&](const mesh::PlanarEdge& e) {
         return (e.a == wall.a && e.b == wall.b) || (e.a == wall.b && e.b == wall.a);
       });
       const bool inner = edge->right >= 0 && !columns_.at(region_of(edge->left), wall.slab).is_void() &&
@@ -103,7 +106,7 @@ class PortCheck {
     return (!label.is_void() && label.net == net) || (label.is_void() && label.hollow_net == net);
   }
 
-  void measure_edge(const SharedEdge& edge) {
+  void measure_edge(const mesh::PlanarEdge& edge) {
     const auto &p = parts_.planar.points_m()[index(edge.a)], &q = parts_.planar.points_m()[index(edge.b)];
     const double length = std::hypot(q[0] - p[0], q[1] - p[1]);
     if (const std::int32_t number = ports_.on_line(edge); number >= 0) {
@@ -180,7 +183,7 @@ bool is_on_segment(const std::array<double, 2>& p, geometry::Point from, geometr
   return std::abs(across) <= line_tolerance_m && along >= -line_tolerance_m && along <= length + line_tolerance_m;
 }
 
-std::int32_t PortFootprints::on_line(const SharedEdge& edge) const {
+std::int32_t PortFootprints::on_line(const mesh::PlanarEdge& edge) const {
   if (ports_of_region_.empty()) return -1;
   const auto& left = ports_of_region_[index(planar_.regions()[index(edge.left)])];
   static const std::vector<std::int32_t> none;
@@ -209,7 +212,7 @@ bool PortFootprints::has_slab(std::int32_t port, std::int32_t slab) const {
 }
 
 void add_ports(mesh::PrismMeshParts& parts, const Columns& columns, const model::Model& model, const PortFootprints& ports,
-               const std::vector<SharedEdge>& edges) {
+               const std::vector<mesh::PlanarEdge>& edges) {
   if (model.ports().empty()) return;
   const PortCheck check(parts, columns, model, ports, edges);
   std::string faults;

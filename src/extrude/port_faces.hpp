@@ -5,18 +5,12 @@
 #include <cstdint>
 #include <vector>
 
+#include "pcbmesh/mesh/planar_edges.hpp"
 #include "pcbmesh/mesh/prism_mesh.hpp"
 #include "pcbmesh/model/model.hpp"
 #include "src/extrude/columns.hpp"
 
 namespace pcbmesh::extrude {
-
-/// Directed planar edge with the triangle to its left and, if any, the triangle to its right.
-struct SharedEdge {
-  std::int32_t a = 0, b = 0;
-  std::int32_t left = 0;
-  std::int32_t right = -1;
-};
 
 /// Whether a vertex lies on a segment, as nearly as vertices rounded to the nanometre grid can.
 [[nodiscard]] bool is_on_segment(const std::array<double, 2>& p, geometry::Point from, geometry::Point to);
@@ -26,7 +20,7 @@ class PortFootprints {
  public:
   PortFootprints(const mesh::PlanarMesh& planar, const model::Model& model);
   /// Port whose wall stands on the edge, or -1.
-  [[nodiscard]] std::int32_t on_line(const SharedEdge& edge) const;
+  [[nodiscard]] std::int32_t on_line(const mesh::PlanarEdge& edge) const;
   /// Port whose cap covers the region at a face, or -1.
   [[nodiscard]] std::int32_t cap_at(std::int32_t region, std::int32_t face) const;
   [[nodiscard]] bool has_slab(std::int32_t port, std::int32_t slab) const;
@@ -43,6 +37,6 @@ class PortFootprints {
 /// asked for, apart from conductors, inside or outside altogether, and its edges lie on its two conductors.
 /// @throws Error port_invalid (306) naming every port at fault.
 void add_ports(mesh::PrismMeshParts& parts, const Columns& columns, const model::Model& model, const PortFootprints& ports,
-               const std::vector<SharedEdge>& edges);
+               const std::vector<mesh::PlanarEdge>& edges);
 
 }  // namespace pcbmesh::extrude

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "src/mesh/planar_edges.hpp"
+#include "pcbmesh/mesh/planar_edges.hpp"
 
 namespace pcbmesh::mesh {
 namespace {
@@ -50,7 +50,7 @@ std::vector<NetMeasure> measure_nets(const PrismMesh& mesh) {
       const auto z = mesh.plan().z_m();
       const double height = z[index(mesh.plan().first_sublayer(slab + 1))] - z[index(mesh.plan().first_sublayer(slab))];
       for (const PlanarEdge& edge : edges) {
-        const std::int32_t p = here[index(edge.one)], q = edge.other < 0 ? -1 : here[index(edge.other)];
+        const std::int32_t p = here[index(edge.left)], q = edge.right < 0 ? -1 : here[index(edge.right)];
         if (p == q) continue;
         const auto &a = planar.points_m()[index(edge.a)], &b = planar.points_m()[index(edge.b)];
         const double area = std::hypot(b[0] - a[0], b[1] - a[1]) * height;

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "src/mesh/planar_edges.hpp"
+#include "pcbmesh/mesh/planar_edges.hpp"
 
 namespace pcbmesh::mesh {
 namespace {
@@ -59,8 +59,8 @@ class EntityCounter {
       counts_.inner_triangles += (below[t] & above[t]) * times;
     }
     for (const PlanarEdge& edge : edges_) {
-      const int p = below[index(edge.one)], q = above[index(edge.one)];
-      const int r = edge.other < 0 ? 0 : below[index(edge.other)], s = edge.other < 0 ? 0 : above[index(edge.other)];
+      const int p = below[index(edge.left)], q = above[index(edge.left)];
+      const int r = edge.right < 0 ? 0 : below[index(edge.right)], s = edge.right < 0 ? 0 : above[index(edge.right)];
       add_edge(p + q + r + s, (p & q) + (r & s) + (p & r) + (q & s), times);
     }
   }
@@ -72,7 +72,7 @@ class EntityCounter {
       if (present[index(t)] != 0)
         for (const std::int32_t v : mesh_.planar().triangles()[index(t)]) ++cells[index(v)];
     for (const PlanarEdge& edge : edges_) {
-      const int p = present[index(edge.one)], q = edge.other < 0 ? 0 : present[index(edge.other)];
+      const int p = present[index(edge.left)], q = edge.right < 0 ? 0 : present[index(edge.right)];
       counts_.quads += (p | q) * num_sublayers;
       counts_.inner_quads += (p & q) * num_sublayers;
       if ((p & q) == 0) continue;

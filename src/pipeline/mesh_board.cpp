@@ -8,11 +8,13 @@
 #include <ctime>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "pcbmesh/base/error.hpp"
 #include "pcbmesh/compose/compose.hpp"
 #include "pcbmesh/extrude/extrude.hpp"
 #include "pcbmesh/layering/choose_layers.hpp"
+#include "src/pipeline/straight_ports.hpp"
 
 namespace pcbmesh::pipeline {
 namespace {
@@ -75,8 +77,21 @@ MeshBoardResult mesh_board(const board::Board& board, const study::Study& given,
   overlay_options.tolerance_nm = study.tolerance;
   // Simplification by more than a sagitta moves the corners of chords off their arcs, which second order needs.
   if (study.order == 2) overlay_options.coarsest_auto_nm = study.arcs.sagitta_nm;
-  overlay::OverlayResult graph =
-      timed("overlay", [&] { return overlay::overlay(model, overlay_options, diagnostics, progress); });
+  const auto lay_over = [&] {
+    overlay::OverlayResult made = overlay::overlay(model, overlay_options, diagnostics, progress);
+    // Outlines within the tolerance of a port bend it. Where the tolerance is ours, a smaller one is tried for the ports' sake.
+    while (!study.tolerance && made.statistics.tolerance_nm >= 2 * nm_per_um) {
+      const std::vector<std::size_t> bent = bent_ports(made.graph, model);
+      if (bent.empty()) break;
+      diagnostics.note("overlay.bent_port",
+                       fmt::format("tolerance {}: outlines within it bend port '{}'; a smaller one is taken",
+                                   format_length(made.statistics.tolerance_nm), model.ports()[bent.front()].name));
+      overlay_options.tolerance_nm = made.statistics.tolerance_nm / 2;
+      made = overlay::overlay(model, overlay_options, diagnostics, progress);
+    }
+    return made;
+  };
+  overlay::OverlayResult graph = timed("overlay", lay_over);
   // Not the tolerance that held in the end: a run that starts there would take other ways, and the resolved study repeats this
   // one.
   resolved.tolerance = graph.statistics.first_tolerance_nm;

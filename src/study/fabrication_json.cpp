@@ -140,7 +140,8 @@ void write_fabrication(const Fabrication& fabrication, Json& root) {
   materials["use"] = Json::array();
   for (const MaterialChoice& choice : fabrication.materials.choices)
     materials["use"].push_back(Json{{"board", choice.board}, {"take", choice.take}});
-  materials["stated"] = Json{{"model", name_of(fabrication.materials.stated.kind)}, {"at", fabrication.materials.stated.at_hz}};
+  materials["stated"] =
+      Json{{"model", name_of(fabrication.materials.stated.kind)}, {"at", frequency_json(fabrication.materials.stated.at_hz)}};
   root["limits"]["max_unknowns"] = fabrication.max_unknowns ? Json(*fabrication.max_unknowns) : Json(nullptr);
 }
 

@@ -51,6 +51,9 @@ inline double read_frequency_hz(const JsonValue& field) {
   return field.is(JsonKind::string) ? parsed(field, [&] { return parse_frequency_hz(field.as_string()); }) : field.as_number();
 }
 
+/// With a unit where that says just this frequency, "10GHz", else in hertz.
+[[nodiscard]] Json frequency_json(double hz);
+
 [[nodiscard]] geometry::Point read_corner(const JsonValue& value);
 
 /// Exact text of a length: whole millimetres, micrometres or nanometres.

@@ -219,12 +219,14 @@ void check_solver(const Study& study, FaultList& faults) {
     faults.add("/output/order",
                fmt::format("the deck of {} reads elements of first order; take order 1, or palace", name_of(study.solver)));
   check_deck_boundaries(study, faults);
-  if (study.solver == Solver::palace) return;
+  if (study.solver == Solver::palace || study.solver == Solver::getdp) return;
   for (std::size_t i = 0; i < study.ports.size() && study.problem == Problem::driven; ++i)
     if (study.ports[i].kind == PortKind::wave)
       faults.add(
           fmt::format("/ports/{}/kind", i),
-          fmt::format("wave port '{}': only palace solves wave ports; make it lumped, or take palace", study.ports[i].name));
+          fmt::format(
+              "wave port '{}': only palace and getdp have wave ports in their decks; make it lumped, or take one of them",
+              study.ports[i].name));
 }
 
 }  // namespace

@@ -193,10 +193,16 @@ void write_physics(const Study& study, const StudyWords& words, Json& root) {
   for (std::size_t i = 0; i < study.polygon_boundaries.size(); ++i)
     boundaries[fmt::format("side_{}", i + 1)] = boundary_json(study.polygon_boundaries[i]);
   root["sweep"] = nullptr;
-  if (study.sweep && !study.sweep->list_hz.empty()) root["sweep"] = Json{{"list", study.sweep->list_hz}};
+  if (study.sweep && !study.sweep->list_hz.empty()) {
+    Json list = Json::array();
+    for (const double hz : study.sweep->list_hz) list.push_back(frequency_json(hz));
+    root["sweep"] = Json{{"list", std::move(list)}};
+  }
   if (study.sweep && study.sweep->list_hz.empty())
-    root["sweep"] = Json{{"from", study.sweep->from_hz}, {"to", study.sweep->to_hz}, {"points", study.sweep->points}};
-  root["modes"] = Json{{"number", study.modes.number}, {"above", study.modes.above_hz}};
+    root["sweep"] = Json{{"from", frequency_json(study.sweep->from_hz)},
+                         {"to", frequency_json(study.sweep->to_hz)},
+                         {"points", study.sweep->points}};
+  root["modes"] = Json{{"number", study.modes.number}, {"above", frequency_json(study.modes.above_hz)}};
 }
 
 }  // namespace pcbmesh::study

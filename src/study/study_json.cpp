@@ -162,6 +162,19 @@ std::string exact_length(Nm value) {
   return fmt::format("{}nm", value);
 }
 
+Json frequency_json(double hz) {
+  struct Unit {
+    double hz;
+    const char* name;
+  };
+  for (const auto& [unit_hz, name] : {Unit{1e9, "GHz"}, Unit{1e6, "MHz"}, Unit{1e3, "kHz"}}) {
+    // A number that is short and comes back as it was; any other is exact in hertz alone.
+    const std::string text = fmt::format("{:.6g}{}", hz / unit_hz, name);
+    if (hz >= unit_hz && parse_frequency_hz(text) == hz) return text;
+  }
+  return hz;
+}
+
 Json optional_length(const std::optional<Nm>& value) {
   return value ? Json(exact_length(*value)) : Json(nullptr);
 }
@@ -284,7 +297,7 @@ std::string to_json(const Study& study, const StudyWords& words) {
                      {"below", exact_length(study.air_below)},
                      {"around", exact_length(study.air_around)}};
   Json& mesh = root["mesh"];
-  mesh["frequency"] = optional_value(study.frequency_hz);
+  mesh["frequency"] = study.frequency_hz ? frequency_json(*study.frequency_hz) : Json(nullptr);
   mesh["longest_edge"] = optional_length(study.longest_edge);
   mesh["min_angle_deg"] = study.min_angle_deg;
   mesh["edge_at_copper"] = optional_length(study.edge_at_copper);

@@ -9,8 +9,8 @@
 #include <map>
 
 #include "pcbmesh/base/error.hpp"
+#include "pcbmesh/mesh/planar_edges.hpp"
 #include "pcbmesh/view/render.hpp"
-#include "src/view/planar_edges.hpp"
 #include "src/view/svg.hpp"
 
 namespace pcbmesh::view {
@@ -115,7 +115,7 @@ void put_loop(std::string& path, const std::vector<std::int32_t>& loop, const me
 /// Outlines of every class, one path each.
 std::vector<std::string> outlines(const mesh::PlanarMesh& planar, const Plan& plan) {
   std::vector<Side> sides;
-  visit_planar_edges(planar, [&](const PlanarEdge& edge) {
+  mesh::visit_planar_edges(planar, [&](const mesh::PlanarEdge& edge) {
     const std::int32_t left = plan.class_of[index(edge.left)], right = edge.right < 0 ? -1 : plan.class_of[index(edge.right)];
     if (left == right) return;
     if (left >= 0) sides.push_back({left, edge.a, edge.b});
@@ -147,7 +147,7 @@ std::vector<std::string> outlines(const mesh::PlanarMesh& planar, const Plan& pl
 
 std::string edge_path(const mesh::PlanarMesh& planar, const Plan& plan) {
   std::string path;
-  visit_planar_edges(planar, [&](const PlanarEdge& edge) {
+  mesh::visit_planar_edges(planar, [&](const mesh::PlanarEdge& edge) {
     if (plan.class_of[index(edge.left)] < 0 && (edge.right < 0 || plan.class_of[index(edge.right)] < 0)) return;
     const auto &a = planar.points_m()[index(edge.a)], &b = planar.points_m()[index(edge.b)];
     path += fmt::format("M{:.6g} {:.6g}L{:.6g} {:.6g}", a[0] * mm_per_m, a[1] * mm_per_m, b[0] * mm_per_m, b[1] * mm_per_m);

@@ -5,7 +5,7 @@
 #include <map>
 #include <utility>
 
-#include "src/view/planar_edges.hpp"
+#include "pcbmesh/mesh/planar_edges.hpp"
 #include "src/view/section_plane.hpp"
 
 namespace pcbmesh::view {
@@ -137,7 +137,7 @@ void put_caps(const mesh::PrismMesh& mesh, const Shown& shown, FaceStream& out) 
 
 void put_walls(const mesh::PrismMesh& mesh, const Shown& shown, FaceStream& out) {
   const std::int32_t num_slabs = mesh.plan().num_slabs();
-  visit_planar_edges(mesh.planar(), [&](const PlanarEdge& edge) {
+  mesh::visit_planar_edges(mesh.planar(), [&](const mesh::PlanarEdge& edge) {
     // Where no box cuts through regions, cells of one region differ nowhere.
     if (edge.right >= 0 && !shown.has_box() && shown.same_region(edge.left, edge.right)) return;
     for (std::int32_t s = 0; s < num_slabs; ++s) {
@@ -241,7 +241,7 @@ void visit_inner_faces(const mesh::PrismMesh& mesh, const Visibility& visibility
   for (const mesh::Wall& wall : mesh.walls())
     if (is_inner(wall.tag)) beside[{std::min(wall.a, wall.b), std::max(wall.a, wall.b)}] = {-1, -1};
   if (beside.empty()) return;
-  visit_planar_edges(mesh.planar(), [&](const PlanarEdge& edge) {
+  mesh::visit_planar_edges(mesh.planar(), [&](const mesh::PlanarEdge& edge) {
     const auto found = beside.find({std::min(edge.a, edge.b), std::max(edge.a, edge.b)});
     if (found != beside.end()) found->second = {edge.left, edge.right};
   });

@@ -152,6 +152,44 @@ def matched_layers(folder):
     expect(done.returncode == 2 and "thickness" in done.stderr, f"shell without thickness: {done.stderr}")
 
 
+def links_in_gmsh(file, tags, pairs, what):
+    """Gmsh knows each side of a pair, its partner, and every node's partner, which lies one period away."""
+    gmsh.clear()
+    gmsh.open(str(file))
+    for side, partner in pairs:
+        master, nodes, masters, affine = gmsh.model.mesh.getPeriodicNodes(2, face(tags, side)["id"])
+        expect(master == face(tags, partner)["id"] and set(nodes) == set(gmsh.model.mesh.getNodesForPhysicalGroup(2, face(tags, side)["id"])[0]), f"{what}: {side} has {len(nodes)} links to {master}")
+        place = {n: numpy.array(gmsh.model.mesh.getNode(n)[0]) for n in (*nodes, *masters)}
+        axis = "xy".index(side[0])
+        period = numpy.eye(3)[axis] * (tags["bounding_box_m"]["max"][axis] - tags["bounding_box_m"]["min"][axis]) / tags["unit_m"]
+        expect(len(nodes) > 20 and len(set(masters)) == len(nodes) and all(numpy.abs(place[n] - place[m] - period).max() < 1e-12 for n, m in zip(nodes, masters)), f"{what}: partners of {side} lie elsewhere")
+        expect(len(affine) == 16 and numpy.allclose(numpy.reshape(affine, (4, 4)), [[*row, p] for row, p in zip(numpy.eye(3), period)] + [[0, 0, 0, 1]], atol=1e-12), f"{what}: transformation of {side} is {affine}")
+
+
+def links_22(file):
+    """(side, partner) -> (transformation, pairs of nodes) of $Periodic in MSH 2.2, which is text in binary files too."""
+    rows = iter(file.read_bytes().split(b"$Periodic\n")[1].split(b"$EndPeriodic")[0].decode().splitlines())
+    found = {}
+    for _ in range(int(next(rows))):
+        dimension, side, partner = map(int, next(rows).split())
+        word, *affine = next(rows).split()
+        expect(word == "Affine", f"{file.name}: {word}")
+        pairs = {tuple(map(int, next(rows).split())) for _ in range(int(next(rows)))}
+        if dimension == 2:
+            found[side, partner] = (tuple(map(float, affine)), pairs)
+    return found
+
+
+def links_as_gmsh_writes_them(file, newer, folder):
+    """Gmsh 4.8 passes over $Periodic of version 2.2, its own as well; so ours is held against what Gmsh writes for the same mesh in 4.1."""
+    gmsh.clear()
+    gmsh.open(str(newer))
+    gmsh.option.setNumber("Mesh.MshFileVersion", 2.2)
+    gmsh.write(str(folder / "gmsh.msh"))
+    ours, theirs = links_22(file), links_22(folder / "gmsh.msh")
+    expect(ours == theirs and len(ours) > 0, f"{file.name}: {list(ours)}, Gmsh writes {list(theirs)}")
+
+
 def periodic_pairs(folder):
     board = put(folder, "cell.json", CELL)
     sides = {"xmin": "periodic", "xmax": "periodic"}
@@ -164,11 +202,25 @@ def periodic_pairs(folder):
         gmsh.clear()
         gmsh.open(str(file))
         one, other = (numpy.array(sorted(map(tuple, numpy.round(nodes_of(tags, side)[:, 1:] * 1e9)))) for side in ("xmin", "xmax"))
+        if name != "tets":
+            links_in_gmsh(file, tags, (("xmax", "xmin"),), name)
         expect(len(one) > 20 and one.shape == other.shape and (one == other).all(), f"{name}: nodes of the two sides differ")
         verdict = json.loads(run("check", file, "--json").stdout)
         expect(verdict["passed"] and not [f for f in verdict["findings"] if f["code"].startswith("periodic")], f"{name}: {verdict['findings']}")
     # Both pairs at once, and layers above: the cell of an endless array.
     both = study(folder, "both", region={"box": {"min": [-4, -8], "max": [5, 0]}}, boundaries={"all": "periodic", "side": "none", "zmin": {"kind": "pml", "thickness": 1}, "zmax": {"kind": "pml", "thickness": 1}})
+    for options in ((), ("--ascii",), ("--msh-version", "2.2"), ("--msh-version", "2.2", "--ascii"), ("--unit", "mm")):
+        file, tags = mesh(folder, board, "both", "--study", both, *options)
+        if "2.2" in options:
+            links_as_gmsh_writes_them(file, folder / "newest.msh", folder)
+        else:
+            links_in_gmsh(file, tags, (("xmax", "xmin"), ("ymax", "ymin")), f"both pairs {options}")
+            (folder / "newest.msh").write_bytes(file.read_bytes())
+        verdict = json.loads(run("check", file, "--json").stdout)
+        expect(verdict["passed"] and not verdict["findings"], f"both pairs {options}: {verdict['findings']}")
+    file, tags = mesh(folder, board, "deck", "--study", study(folder, "deck", region=cell, boundaries={"all": "pec", **sides}), "--problem", "eigenmode", "--for", "getdp")
+    expect(list(links_22(file)) == [(face(tags, "xmax")["id"], face(tags, "xmin")["id"])], f"GetDP's numbers: {list(links_22(file))}")
+    expect(face(tags, "ymin")["partner"] is None, "one pair")
     _, tags = mesh(folder, board, "both", "--study", both)
     expect(face(tags, "ymin")["partner"] == "ymax" and face(tags, "zmax")["condition"] == "pec", "both pairs")
     words = refused(folder, board, 2, ["/boundaries/xmin", "layer top", "copper of B", "across from it", "whole number of periods"], "--study",

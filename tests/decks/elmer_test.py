@@ -2,36 +2,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Decks for Elmer, solved by Elmer. Debian has no package: with ElmerGrid and ElmerSolver on the path they run, else the test is skipped."""
 import math
-import pathlib
 import shutil
-import sys
-import tempfile
 import unittest
 
-from program import ROOT, SKIPPED
+from solver_cases import InFolder, cases, exact, require, solve
 
-sys.path.insert(0, str(ROOT / "validation/cases/solvers"))
-if not (shutil.which("ElmerSolver") and shutil.which("ElmerGrid")):
-    print("skipped: ElmerGrid and ElmerSolver are not on the path, and Debian has no package of them")
-    sys.exit(SKIPPED)
-try:
-    import cases
-    import exact
-    import solve
-except ImportError as missing:
-    print(f"skipped: {missing}; scripts/setup installs it")
-    sys.exit(SKIPPED)
+require(shutil.which("ElmerSolver") and shutil.which("ElmerGrid"), "ElmerGrid and ElmerSolver are not on the path, and Debian has no package of them")
 
 
-class Elmer(unittest.TestCase):
+class Elmer(InFolder):
     """Elmer writes files of its own: what a case makes of GetDP's is not there, so they are read here."""
-
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.out = pathlib.Path(self.folder.name)
-
-    def tearDown(self):
-        self.folder.cleanup()
 
     def numbers(self, case, *arguments, result, **more):
         def hollow(board, study, folder, **run):
@@ -59,11 +39,30 @@ class Elmer(unittest.TestCase):
 
     def test_driven_line(self):
         """Time is exp(-i omega t) there; fields are averaged over nodes before they are integrated, so the port is rougher than GetDP's."""
-        re1, im1, re2, im2 = self.numbers(cases.tem_line, 5, result="line.port1.dat")[:4]
-        through = complex(re2, -im2) / 0.02
+        near, through = self.line(hz=3e9)
         delay = -math.tau * 3e9 * 2 * 0.1 / exact.LIGHT
         self.assertLess(abs(through - complex(math.cos(delay), math.sin(delay))), 0.03)
-        self.assertLess(abs(complex(re1, im1) / 0.02 - 1), 0.03)
+        self.assertLess(abs(near - 1), 0.03)
+
+    def line(self, **more):
+        """Voltages of the fed and of the other port, for a wave of 1 V inwards."""
+        re1, im1, re2, im2 = self.numbers(cases.tem_line, 5, result="line.port1.dat", **more)[:4]
+        return complex(re1, -im1) / 0.02, complex(re2, -im2) / 0.02
+
+    def test_changes_of_the_study_change_the_result_as_they_must(self):
+        """Loss tangent, port impedance, one boundary: each reaches the solver and does what the formula says."""
+        ohm, wave_number = exact.ETA0 / 4, math.tau * 1e9 / exact.LIGHT * 2
+        _, plain = self.line(hz=1e9)
+        self.assertLess(abs(plain - exact.line_s(ohm, 1j * wave_number, 0.1, ohm)[1]), 0.03)
+        _, lossy = self.line(hz=1e9, tan_delta=0.05)
+        self.assertLess(abs(abs(lossy) - math.exp(-wave_number * 0.1 * 0.025)), 0.03)
+        near, through = self.line(hz=1e9, ohm_factor=2)
+        wanted = exact.line_s(ohm, 1j * wave_number, 0.1, 2 * ohm)
+        self.assertGreater(abs(wanted[0]), 0.2)
+        self.assertLess(abs(near - 1 - wanted[0]), 0.05)
+        self.assertLess(abs(through - wanted[1]), 0.05)
+        _, walled = self.line(hz=1e9, boundaries={"all": "none", "ymin": "pec", "ymax": "pec"})
+        self.assertLess(abs(walled), 0.03)
 
 
 if __name__ == "__main__":

@@ -6,22 +6,12 @@ import json
 import os
 import pathlib
 import subprocess
-import sys
-import tempfile
 import unittest
 
-from program import ROOT, SKIPPED, run
+from program import ROOT, run
+from solver_cases import InFolder, cases, require, solve
 
-sys.path.insert(0, str(ROOT / "validation/cases/solvers"))
-if not os.environ.get("MFEM_DIR"):
-    print("skipped: MFEM_DIR is not set to a build of MFEM, of which Debian has no package")
-    sys.exit(SKIPPED)
-try:
-    import cases
-    import solve
-except ImportError as missing:
-    print(f"skipped: {missing}; scripts/setup installs it")
-    sys.exit(SKIPPED)
+require(os.environ.get("MFEM_DIR"), "MFEM_DIR is not set to a build of MFEM, of which Debian has no package")
 
 LOADER = """#include <iostream>
 #include "mfem.hpp"
@@ -36,14 +26,7 @@ int main(int, char** argv) {
 """
 
 
-class Mfem(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.out = pathlib.Path(self.folder.name)
-
-    def tearDown(self):
-        self.folder.cleanup()
-
+class Mfem(InFolder):
     def test_both_versions_of_the_mesh_load(self):
         (self.out / "load.cpp").write_text(LOADER)
         config = next(c for c in (pathlib.Path(os.environ["MFEM_DIR"]) / sub / "config.mk" for sub in ("config", "share/mfem")) if c.exists())
@@ -69,6 +52,51 @@ class Mfem(unittest.TestCase):
             self.assertAlmostEqual(found / wanted, 1, places=12, msg=mode)
         _, found, wanted = cases.coaxial_via(self.out, solver="mfem")
         self.assertLess(abs(found / wanted - 1), 0.01)
+
+    @unittest.skipUnless(solve.has_getdp(), "getdp is not installed; scripts/setup installs it")
+    def test_resonances_agree_with_getdp_on_the_same_elements(self):
+        """Prisms, then their tetrahedral twin: two codes and two eigenvalue solvers, the same lowest-order edge elements."""
+        wanted, _ = cases.cavity(self.out / "getdp", 20)
+        for arguments in ((), ("--split", "tets")):
+            if arguments:
+                solve.solve_twin(wanted, "Resonances")
+            found, pairs = cases.cavity(self.out, 20, solver="mfem", arguments=arguments)
+            self.assertEqual(len(pairs), 3)
+            for a, b in zip(found.resonances_hz()[:3], wanted.resonances_hz()[:3]):
+                self.assertLess(abs(a / b - 1), 1e-8, arguments)
+        _, k_squared = cases.box_cavity(self.out, 8, solver="mfem")
+        self.assertEqual(f"{k_squared:.4f}", "22.8166")
+        _, pairs = cases.cavity(self.out, 20, solver="mfem", environment={"ORDER": "2"})
+        self.assertTrue(all(abs(found / closed - 1) < 2e-4 for found, closed in pairs), pairs)
+
+    def test_quality_of_a_filled_cavity(self):
+        """A dielectric's own loss: Q is one over its loss tangent, whatever the mode."""
+        board = cases.board("filled", [("top", 1.0), ("space", 70, 4.0, 0.02), ("bottom", 1.0)], cases.rect(0, 0, 100, 90), ["LID", "GND"],
+                            planes=[{"layer": "top", "net": "LID"}, {"layer": "bottom", "net": "GND"}])
+        study = cases.study("eigenmode", 30, boundaries={"all": "pec"}, modes={"number": 2, "above": 1e9})
+        solved = solve.solve(board, study, self.out, "mfem")
+        columns = (self.out / "filled.modes.txt").read_text().split("# ")[1:]
+        stored, lost = ([float(line.split()[1]) for line in column.splitlines()[1:]] for column in columns[1:])
+        self.assertEqual(len(stored), 2)
+        self.assertTrue(all(abs(s / l - 50) < 1e-6 for s, l in zip(stored, lost)), (stored, lost))
+        self.assertTrue(all(f > 1e9 for f in solved.resonances_hz()))
+
+    def test_changes_of_the_study_change_the_result_as_they_must(self):
+        """Loss tangent, port impedance, one boundary: each reaches the solver and does what the formula says."""
+        def line(**more):
+            _, s, wanted = cases.tem_line(self.out, 10, hz=1e9, solver="mfem", environment={"ORDER": "2"}, **more)
+            return s, wanted
+
+        s, wanted = line()
+        self.assertLess(abs(s[1][0] - wanted[1]), 1e-3)
+        lossy, wanted = line(tan_delta=0.05)
+        self.assertLess(abs(lossy[1][0] - wanted[1]), 1e-3)
+        self.assertLess(abs(lossy[1][0]), 0.91)
+        mismatched, wanted = line(ohm_factor=2)
+        self.assertLess(abs(mismatched[0][0] - wanted[0]), 1e-3)
+        self.assertGreater(abs(mismatched[0][0]), 0.2)
+        walled, _ = line(boundaries={"all": "none", "ymin": "pec", "ymax": "pec"})
+        self.assertLess(abs(walled[1][0]), 1e-3)
 
     @unittest.skipUnless(solve.has_getdp(), "getdp is not installed; scripts/setup installs it")
     def test_driven_agrees_with_getdp_on_the_same_prisms(self):

@@ -21,9 +21,9 @@ BOARD = ROOT / "examples/microstrip.json"
 PORTS = ("--port", "P1,net=LINE,at=J1.1", "--port", "P2,net=LINE,at=J2.1,z=75,passive")
 
 
-def mesh(folder, name, *options, expected=0):
+def mesh(folder, name, *options, expected=0, board=BOARD):
     file = folder / name
-    done = run("mesh", BOARD, "-o", file, *options)
+    done = run("mesh", board, "-o", file, *options)
     if done.returncode != expected:
         raise SystemExit(f"{done.args}\nexit {done.returncode}\n{done.stdout}{done.stderr}")
     return file, json.loads(file.with_suffix(".tags.json").read_text())
@@ -213,10 +213,41 @@ def init_needs_no_edit(folder):
     expect([p["at"] for p in proposed] == [{"side": "xmin"}, {"side": "xmax"}], f"ports: {done.stdout}{done.stderr}")
 
 
+def vias_are_proposed(folder):
+    """The antipad that a via passes is proposed as a coaxial port, told apart in text and JSON, and what is proposed meshes."""
+    board = ROOT / "examples/launch.json"
+    done = run("ports", board, "--nets", "LINE")
+    proposed = json.loads("{" + done.stdout + "}")["ports"]
+    shapes = {p["name"]: (p["shape"], p["note"].split(",")[0]) for p in proposed}
+    expect({n[0] for n in shapes} == {"P", "C"} and all(s == (("coaxial", "coaxial") if n[0] == "C" else ("auto", "vertical")) for n, s in shapes.items()), f"ports of the launch: {proposed}")
+    expect("C1     net LINE against GND: coaxial, the via at" in done.stderr, f"ports of the launch in words: {done.stderr}")
+    study = folder / "proposed.study.json"
+    study.write_text(json.dumps({"schema_version": 1, "ports": proposed}))
+    _, tags = mesh(folder, "proposed.msh", "--study", study, board=board)
+    expect({p["name"]: p["kind"] for p in tags["ports"]} == {n: "coaxial" if n[0] == "C" else "lumped" for n in shapes}, f"what was proposed: {tags['ports']}")
+    begun = folder / "begun.study.json"
+    done = run("init", board, "--nets", "LINE", "-o", begun)
+    expect(not [p for p in json.loads(begun.read_text())["ports"] if p["shape"] == "coaxial"], "init puts no port in the middle of a line")
+
+
+def a_polygon_by_flag(folder):
+    corners = "5mm,1mm,15mm,1mm,15mm,9mm,10mm,9.5mm,5mm,9mm"
+    _, tags = mesh(folder, "polygon.msh", "--polygon", corners, "--conductors", "hollow")
+    area = sum(f["area_m2"] for f in tags["faces"] if f["name"] == "zmin")
+    expect(close(area, 82.5e-6, 1e-9), f"polygon: {area} m2")
+    resolved = json.loads((folder / "polygon.resolved.json").read_text())["region"]
+    expect(resolved["kind"] == "polygon" and len(resolved["polygon"]) == 5, f"polygon: {resolved}")
+    for wrong, word in (("5mm,1mm,15mm,1mm", "at least three corners"), ("5mm,1mm,15mm,1mm,15mm,9mm,2mm", "7 lengths were given"), ("5mm,1mm,15mm,9mm,15mm,1mm,5mm,9mm", "crosses itself near (10, 5) mm")):
+        done = run("mesh", BOARD, "--polygon", wrong, "-o", folder / "crossed.msh")
+        expect(done.returncode == 2 and word in done.stderr, f"--polygon {wrong}: exit {done.returncode} {done.stderr}")
+    done = run("mesh", BOARD, "--polygon", corners, "--region", "5mm,1mm,15mm,9mm", "-o", folder / "crossed.msh")
+    expect(done.returncode == 2 and "excludes" in done.stderr, f"two regions: {done.stderr}")
+
+
 gmsh.initialize()
 gmsh.option.setNumber("General.Terminal", 0)
 with tempfile.TemporaryDirectory() as scratch:
-    for step in (modes_agree, one_mode_alone, sheets_on_the_hull, ports_on_sides, palace_gets_no_chords, a_ring_in_an_antipad, wrong_ports_are_named, init_needs_no_edit):
+    for step in (modes_agree, one_mode_alone, sheets_on_the_hull, ports_on_sides, palace_gets_no_chords, a_ring_in_an_antipad, wrong_ports_are_named, init_needs_no_edit, vias_are_proposed, a_polygon_by_flag):
         step(pathlib.Path(scratch))
 gmsh.finalize()
 for fault in faults:

@@ -2,37 +2,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Decks that run: native boards through pcbmesh to GetDP and back to numbers, judged by closed formulas. The short form of
 validation/cases/solvers."""
+import cmath
 import json
-import pathlib
+import math
 import re
 import shlex
-import sys
-import tempfile
 import unittest
 
-from program import ROOT, SKIPPED, run
+from program import ROOT, run
+from solver_cases import InFolder, cases, exact, require, solve
 
-sys.path.insert(0, str(ROOT / "validation/cases/solvers"))
-try:
-    import cases
-    import exact
-    import solve
-except ImportError as missing:
-    print(f"skipped: {missing}; scripts/setup installs it")
-    sys.exit(SKIPPED)
-if not solve.has_getdp():
-    print("skipped: getdp is not installed; scripts/setup installs it")
-    sys.exit(SKIPPED)
+require(solve.has_getdp(), "getdp is not installed; scripts/setup installs it")
 
 
-class Solvers(unittest.TestCase):
-    def setUp(self):
-        self.folder = tempfile.TemporaryDirectory()
-        self.out = pathlib.Path(self.folder.name)
-
-    def tearDown(self):
-        self.folder.cleanup()
-
+class Solvers(InFolder):
     def test_cavity_converges_to_the_closed_formula(self):
         errors = []
         for edge in (30, 15):
@@ -41,6 +24,13 @@ class Solvers(unittest.TestCase):
         self.assertEqual(len(errors[1]), 3)
         self.assertTrue(all(0 < e < 0.01 for e in errors[1]), errors)
         self.assertTrue(all(coarse / fine > 3 for coarse, fine in zip(*errors)), errors)
+
+    def test_cavity_of_bricks_has_the_digits_of_an_independent_code(self):
+        """k0^2 of the first mode as noted for such bricks of another mesh generator."""
+        for bricks, wanted in ((4, 25.145), (8, 22.8166)):
+            solved, found = cases.box_cavity(self.out, bricks)
+            self.assertEqual(solved.prisms, 2 * bricks ** 3)
+            self.assertEqual(f"{found:.{len(str(wanted).split('.')[1])}f}", str(wanted))
 
     def test_tem_line_converges_with_the_square_of_the_edge(self):
         errors = []
@@ -87,6 +77,19 @@ class Solvers(unittest.TestCase):
         self.assertLess(abs(s[0][0] - wanted[0]), 0.01)
         self.assertLess(abs(s[1][0] - wanted[1]), 0.01)
 
+    def test_wave_ports_take_the_mode_and_nothing_else(self):
+        """A lossless microstrip: the electric and the magnetic profile of its mode differ, and a port that took one for the other would lose 5 % of the power."""
+        solved, ((_, s),) = cases.guided(self.out, "microstrip", 1.0, 0.3, hz=[5e9], length=3, air=2.5)
+        ohm, effective = exact.microstrip(1.1e-3, 0.508e-3, 3.66)
+        self.assertLess(abs(solved.port_impedances()[0] / ohm - 1), 0.03)
+        self.assertLess(abs(1 - abs(s[0][0]) ** 2 - abs(s[1][0]) ** 2), 1e-9)
+        self.assertLess(abs(s[0][0]), 0.005)
+        delay = -cmath.phase(s[1][0]) / (2 * math.pi * 5e9 * 3e-3) * exact.LIGHT
+        self.assertLess(abs(delay / math.sqrt(effective) - 1), 0.02)
+        _, ((_, mixed),) = cases.guided(self.out, "microstrip", 1.0, 0.3, hz=[5e9], length=3, air=2.5, kinds=("wave", "lumped"))
+        self.assertLess(abs(mixed[0][1] - mixed[1][0]), 1e-6)
+        self.assertLess(max(abs(mixed[0][0]), abs(mixed[1][1])), 0.3)
+
     def test_via_transition_is_passive_and_reciprocal(self):
         _, sweep = cases.via_transition(self.out, hz=(4e9,))
         s = sweep[0][1]
@@ -103,13 +106,28 @@ class Solvers(unittest.TestCase):
                                  (["--for", "getdp", "--boundary", "all=none"], ["port", "frequencies"]),
                                  (["--for", "getdp", "--problem", "eigenmode", "--boundary", "all=absorbing"], ["absorbing", "driven"]),
                                  (["--for", "dolfinx", "--problem", "eigenmode", "--split", "none"], ["edge elements", "--split tets", "getdp"]),
-                                 (["--for", "mfem", "--problem", "eigenmode", "--to", "mfem"], ["eigenvalue solver", "driven sweep"]),
+                                 (["--for", "mfem", "--problem", "eigenmode", "--to", "mfem", "--boundary", "all=absorbing"], ["absorbing", "driven sweep"]),
                                  (["--for", "getdp", "--problem", "eigenmode", "--order", "2"], ["first order"])):
             done = run("mesh", file, "--air", "0", "-o", self.out / ("x.vtkhdf" if "dolfinx" in arguments else "x.msh"), *arguments)
             self.assertNotEqual(done.returncode, 0, arguments)
             for word in words:
                 self.assertIn(word, done.stderr, arguments)
             self.assertEqual([p.name for p in self.out.glob("x*")], [], arguments)
+
+    def test_copper_that_floats_without_a_body_is_refused(self):
+        """A skin or sheet without a net has no condition that any of these solvers knows: it would be as if it were not there."""
+        board = cases.board("b", [("top", 0.035), ("upper", 0.5, 4.0, 0.0), ("mid", 0.035), ("lower", 0.5, 4.0, 0.0), ("bottom", 0.035)], cases.rect(0, 0, 10, 5), ["A", "GND"],
+                            tracks=[{"layer": "mid", "width": 1, "points": [[2, 2], [8, 2]]}], planes=[{"layer": "top", "net": "A"}, {"layer": "bottom", "net": "GND"}])
+        file = self.out / "b.json"
+        file.write_text(json.dumps(board))
+        for solver in ("palace", "elmer", "getdp", "mfem", "dolfinx"):
+            for mode in ("hollow", "sheet"):
+                out = self.out / f"{solver}_{mode}"
+                done = run("mesh", file, "--air", "0", "--for", solver, "--problem", "electrostatic", "--conductors", mode, "-o", out)
+                self.assertEqual((done.returncode, "error 703" in done.stderr), (5, True), done.stderr)
+                for words in (f"{mode} copper without a net, '{'sheet' if mode == 'sheet' else 'surface'}|none', which floats", "solid copper"):
+                    self.assertIn(words, done.stderr)
+                self.assertEqual(list(out.glob("*")), [])
 
     def test_palace_elmer_mfem_and_dolfinx_hold_everything_of_the_study(self):
         board = cases.board("b", [("top", 0.035), ("core", 0.5, 4.1, 0.013), ("bottom", 0.035)], cases.rect(-2, -2, 12, 7), ["A", "GND"],

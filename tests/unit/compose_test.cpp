@@ -10,6 +10,7 @@
 #include <string>
 
 #include "formats/native_json/format.hpp"
+#include "model_places.hpp"
 #include "pcbmesh/base/error.hpp"
 #include "pcbmesh/geometry/ring_contact.hpp"
 
@@ -25,6 +26,7 @@ using model::Model;
 using study::ConductorMode;
 using study::RegionKind;
 using study::Study;
+using testing::label_at;
 
 const std::filesystem::path examples = std::filesystem::path(PCBMESH_SOURCE_DIR) / "examples";
 
@@ -55,38 +57,6 @@ Study study_without_air() {
 Model composed(const Board& board, const Study& s) {
   Diagnostics ignored;
   return compose::compose(board, s, ignored);
-}
-
-bool covers(const model::BodyShape& shape, geometry::Point p) {
-  int winding = 0;
-  for (const geometry::Ring& ring : shape.rings)
-    for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
-      const int turn = geometry::orientation(ring[j], ring[i], p);
-      if (ring[j].y <= p.y && ring[i].y > p.y && turn > 0) ++winding;
-      if (ring[j].y > p.y && ring[i].y <= p.y && turn < 0) --winding;
-    }
-  return winding != 0;
-}
-
-std::int32_t slab_named(const Model& m, std::string_view name) {
-  for (std::size_t i = 0; i < m.slabs().size(); ++i)
-    if (m.slabs()[i].layer == name) return static_cast<std::int32_t>(i);
-  ADD_FAILURE() << "no slab " << name;
-  return 0;
-}
-
-/// What fills a place: "copper|GND", "PP|no net", "void", "hollow|A".
-std::string label_at(const Model& m, std::string_view layer, double x_mm, double y_mm) {
-  const geometry::Point p{nm_from_mm(x_mm) + 1, nm_from_mm(y_mm) + 3};
-  std::vector<std::int32_t> present;
-  for (std::size_t b = 0; b < m.bodies().size(); ++b)
-    if (std::any_of(m.shapes().begin(), m.shapes().end(),
-                    [&](const auto& s) { return s.body == static_cast<std::int32_t>(b) && covers(s, p); }))
-      present.push_back(static_cast<std::int32_t>(b));
-  const Label label = m.resolve(slab_named(m, layer), present);
-  if (label.hollow_net != -2) return fmt::format("hollow|{}", m.net_name(label.hollow_net));
-  if (label.is_void()) return "void";
-  return fmt::format("{}|{}", m.materials()[static_cast<std::size_t>(label.material)].name, m.net_name(label.net));
 }
 
 const model::Body* body_named(const Model& m, std::string_view name) {

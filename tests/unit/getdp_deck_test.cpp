@@ -172,6 +172,107 @@ TEST(GetdpDeck, ImpedanceAndLossyConductorSides) {
   }
 }
 
+/// The same line with the upper side as a net's copper and wave ports at the ends named.
+mesh::PrismMeshParts wave_line(int cells, const board::Material& material, std::initializer_list<std::size_t> waves,
+                               double port_ohm_factor = 1) {
+  Box box = line(cells, material, port_ohm_factor);
+  for (const std::size_t p : waves) {
+    box.ports[p].kind = mesh::PortKind::wave;
+    box.ports[p].impedance_ohm = 1e-3;  // means nothing there
+    box.ports[p].positive_net = 0;
+  }
+  mesh::PrismMeshParts parts = box_parts(box);
+  parts.nets = {"A"};
+  parts.face_tags[1].kind = mesh::FaceTagKind::conductor;
+  parts.face_tags[1].net = 0;
+  for (const std::size_t p : waves) parts.face_tags[2 + p].kind = mesh::FaceTagKind::wave_port;
+  return parts;
+}
+
+formats::touchstone::ScatteringSweep solve_parts(const mesh::PrismMeshParts& parts, LengthUnit unit = LengthUnit::metre) {
+  const testing::Folder folder;
+  DeckOptions options;
+  options.frequencies_hz = {1e9, 3e9};
+  options.mesh = "box.msh";
+  options.unit = unit;
+  (void)solve(mesh::PrismMesh::from_parts(parts), options, folder.path(), "Driven", "box.ports.txt");
+  return formats::touchstone::read_port_results(folder.path() / "box.ports.txt");
+}
+
+TEST(GetdpDeck, WavePortsFindImpedanceAndWaveOfALine) {
+  if (!has_getdp()) GTEST_SKIP() << "getdp is not installed";
+  const double ohm = 376.730313668 / 2 * 0.01 / 0.02, k = 2 * M_PI * 3e9 / light * 2;
+  std::vector<double> errors;
+  for (const int cells : {10, 20, 40}) {
+    const auto sweep = solve_parts(wave_line(cells, {"dielectric", 4, 0, 1, 0}, {0, 1}), LengthUnit::millimetre);
+    for (const auto& port : sweep.ports) EXPECT_NEAR(port.impedance_ohm, ohm, 1e-9 * ohm) << "plates: exact on any mesh";
+    const auto& s = sweep.scatter[1];
+    errors.push_back(std::abs(s[2] - std::exp(Complex(0, -k * 0.1))) + std::abs(s[0]));
+    EXPECT_LT(std::abs(s[2] - s[1]), 1e-9) << "reciprocal";
+    EXPECT_NEAR(std::norm(s[0]) + std::norm(s[2]), 1, 1e-9) << "nothing is lost";
+  }
+  EXPECT_NEAR(errors[0] / errors[1], 4, 0.8) << errors[0] << " " << errors[1];
+  EXPECT_NEAR(errors[1] / errors[2], 4, 0.4) << errors[1] << " " << errors[2];
+}
+
+TEST(GetdpDeck, WavePortBesideALumpedOneOfAnotherImpedance) {
+  if (!has_getdp()) GTEST_SKIP() << "getdp is not installed";
+  // A line that ends in thrice its own impedance: half of the voltage comes back, whichever end is fed.
+  const double k = 2 * M_PI * 1e9 / light * 2;
+  for (const std::size_t wave : {0, 1}) {
+    const auto sweep = solve_parts(wave_line(40, {"dielectric", 4, 0, 1, 0}, {wave}, 3));
+    EXPECT_NEAR(sweep.ports[1 - wave].impedance_ohm / sweep.ports[wave].impedance_ohm, 3, 1e-9);
+    const auto& s = sweep.scatter[0];
+    const Complex travel = std::exp(Complex(0, -k * 0.1));
+    EXPECT_LT(std::abs(s[3 * wave] - 0.5 * travel * travel), 4e-3) << s[3 * wave];
+    EXPECT_LT(std::abs(s[3 * (1 - wave)] + 0.5), 4e-3) << s[3 * (1 - wave)];
+    EXPECT_LT(std::abs(s[1] - std::sqrt(0.75) * travel), 4e-3) << s[1];
+    EXPECT_LT(std::abs(s[1] - s[2]), 1e-9) << "reciprocal";
+  }
+}
+
+TEST(GetdpDeck, WavePortsWithLossReferToTheImpedanceWithout) {
+  if (!has_getdp()) GTEST_SKIP() << "getdp is not installed";
+  const double k = 2 * M_PI * 1e9 / light * 2;
+  const auto sweep = solve_parts(wave_line(40, {"dielectric", 4, 0.05, 1, 0}, {0, 1}));
+  EXPECT_NEAR(std::abs(sweep.scatter[0][2]), std::exp(-k * 0.1 * 0.025), 2e-3);
+  EXPECT_NEAR(sweep.ports[0].impedance_ohm, 376.730313668 / 4, 1e-6);
+}
+
+TEST(GetdpDeck, WavePortsThatAreNoTemOnesAreRefused) {
+  const testing::Folder folder;
+  Diagnostics diagnostics;
+  DeckOptions options;
+  options.mesh = "box.msh";
+  options.frequencies_hz = {1e9};
+  const auto write = [&](const mesh::PrismMeshParts& parts) {
+    (void)formats::write_deck(mesh::PrismMesh::from_parts(parts), "getdp", options, folder.path(), diagnostics);
+  };
+  const auto refused = [&](const mesh::PrismMeshParts& parts) {
+    const Error error = testing::error_of([&] { write(parts); });
+    EXPECT_EQ(error.code(), ErrorCode::format_limit);
+    EXPECT_NE(error.text().find("lumped"), std::string::npos) << error.text();
+    return error.text();
+  };
+  auto hollow = wave_line(4, {"d", 4, 0, 1, 0}, {0, 1});
+  hollow.face_tags[1].net = -1;
+  EXPECT_NE(refused(hollow).find("no signal conductor"), std::string::npos);
+  auto alone = wave_line(4, {"d", 4, 0, 1, 0}, {0, 1});
+  alone.face_tags[0].condition = BoundaryCondition::pmc;
+  EXPECT_NE(refused(alone).find("no second conductor"), std::string::npos);
+  EXPECT_NE(refused(wave_line(4, {"ferrite", 4, 0, 10, 0}, {0, 1})).find("'ferrite'"), std::string::npos);
+  auto layered = wave_line(4, {"d", 4, 0, 1, 0}, {0, 1});
+  for (const std::size_t p : {0, 1}) layered.ports[p].at_m = {0.1 * static_cast<double>(p), 0.01, 0.005};
+  layered.shell = mesh::Shell{{0, 0, 0}, {0.1, 0.02, 0.008}, {0, 0, 0}, {0.1, 0.02, 0.01}};
+  EXPECT_NE(refused(layered).find("matched layers"), std::string::npos);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path())) << "nothing is written";
+  layered.shell->inner_max_m[2] = 0.01;  // as high as the port
+  write(layered);
+  options.frequencies_hz = {1e9, 5e9};  // half a wave is 15 mm, the port 20 mm wide
+  write(wave_line(4, {"d", 4, 0, 1, 0}, {0, 1}));
+  EXPECT_EQ(diagnostics.count("deck.wide_wave_port"), 2);
+}
+
 TEST(GetdpDeck, RefusesWhatItCannotSay) {
   const testing::Folder folder;
   Diagnostics diagnostics;

@@ -447,6 +447,12 @@ TEST(PortSizes, T6_TwoElementsAcrossAndAlongOrWhatTheStudySays) {
   EXPECT_GE(measured[1].least_along, 2);
   EXPECT_GE(measured[1].least_across, 10);
   EXPECT_EQ(measured[1].num_faces, made.tag("port|G").num_triangles);
+  // A length that the study gives takes the place of the two along, not of those across.
+  study.ports[0].max_edge = mm;
+  made = meshed(layout, study);
+  EXPECT_EQ(sublayers(core), 1);
+  EXPECT_EQ(mesh::measure_ports(made.prisms)[0].least_along, 1);
+  EXPECT_GE(mesh::measure_ports(made.prisms)[0].least_across, 2);
   study.ports[0].max_edge = 100 * um;
   made = meshed(layout, study);
   EXPECT_LE(longest_edge_in(made, 0), 0.1e-3 * (1 + 1e-9));
@@ -542,6 +548,47 @@ TEST(WrongPorts, OnACutOutOfTheBoard) {
       EXPECT_EQ(error.text().find("port 'Q'"), std::string::npos) << error.text();
     }
   }
+}
+
+/// What no shape of the layout shows: a barrel without a pad in a gap, a domain that bends away between two ends.
+TEST(WrongPorts, WhatBarsAFaceIsNamed) {
+  Layout gap;
+  gap.pad(0, line, rectangle(-mm, -mm, 0, mm))
+      .pad(0, other, rectangle(mm, -mm, 2 * mm, mm))
+      .via({500 * um, 300 * um}, 200 * um, 0, gnd);
+  study::Port flat = port("F", {-500 * um, 0}, study::PortShape::gap);
+  flat.reference = "OTHER";
+  expect_words(refusal(gap, flat), {"/ports/0: port 'F' at (0.5, 0) mm is barred near (0.", "copper of net 'GND' stands in it",
+                                    "move it or make it narrower"});
+  flat.width = 300 * um;
+  EXPECT_EQ(refusal(gap, flat), "") << "beside the barrel";
+  Layout layout;
+  layout.plane(1).track(0, line, {0, -8 * mm}, {0, 8 * mm});
+  study::Study study;
+  study.region = study::RegionKind::polygon;
+  study.polygon = {{-3 * mm, -3 * mm}, {3 * mm, -3 * mm}, {3 * mm, 3 * mm}, {0, -100 * um}, {-3 * mm, 3 * mm}};
+  study.ports = {port("V", {0, -200 * um})};
+  EXPECT_EQ(refusal(layout, study), "");
+  study.ports = {port("V", {0, -90 * um})};
+  expect_words(refusal(layout, study), {"port 'V'", "lies outside the domain"});
+  Layout tube;
+  tube.plane(1).track(0, line, {-8 * mm, 0}, {8 * mm, 0}).cutout(rectangle(-mm, 200 * um, mm, 300 * um));
+  expect_words(refusal(tube, port("T", {0, 0})),
+               {"port 'T' at (0, 0) mm touches net 'LINE' along 900 um of its 1000 um long edge",
+                "near (0, 0.25) mm the board is cut out or ends"});
+}
+
+TEST(WrongPorts, AHairFromTheSideOfTheDomain) {
+  Layout layout;
+  layout.plane(1).track(0, line, {0, -8 * mm}, {0, 8 * mm});
+  study::Study study = boxed({port("P", {0, 0})});
+  study.box = geometry::Box{{-4 * mm, -4 * mm}, {500 * um + 84, 4 * mm}};
+  expect_words(refusal(layout, study),
+               {"/ports/0: port 'P' at (0, 0) mm lies 84 nm from the side of the domain at (0.5, 0) mm"});
+  study.box->max.x = 500 * um;
+  EXPECT_EQ(refusal(layout, study), "") << "up to the side itself";
+  study.box->max.x = 502 * um;
+  EXPECT_EQ(refusal(layout, study), "");
 }
 
 /// What only the mesh can tell: copper of another net crosses the ring, so that faces are missing.

@@ -30,15 +30,23 @@ namespace pcbmesh::compose {
 
 /// A port that could be, or why it could not.
 struct PortProposal {
-  study::Port port;       ///< named P1, P2 ...; its reference is filled in
-  std::string about;      ///< "pin J1.2", "the cut at xmin"
+  study::Port port;       ///< named P1, P2 ..., coaxial ones C1, C2 ...; its reference is filled in
+  std::string about;      ///< "pin J1.2", "the cut at xmin", "the via at (1, 2) mm, in its antipad on In1.Cu"
+  std::string how{};      ///< "vertical", "gap" or "coaxial"; empty if it can't be placed
   std::string why_not{};  ///< empty: the port can be placed
   std::array<double, 2> at_mm{};
 };
 
-/// Ports of study.nets from their pins and from where the region cuts them; those that can be placed first, end by end.
+/// Where ports are looked for.
+enum class PortPlaces {
+  ends,          ///< pins of the nets, and where the region cuts them
+  ends_and_vias  ///< and the antipads that their plated holes pass, as coaxial ports
+};
+
+/// Ports of study.nets; those that can be placed first, end by end. Each that is said to be possible passes what compose()
+/// asks.
 /// @throws Error as compose. @cost O(shapes x ports).
-[[nodiscard]] std::vector<PortProposal> propose_ports(const board::Board& board, const study::Study& study,
+[[nodiscard]] std::vector<PortProposal> propose_ports(const board::Board& board, const study::Study& study, PortPlaces places,
                                                       Diagnostics& diagnostics);
 
 }  // namespace pcbmesh::compose

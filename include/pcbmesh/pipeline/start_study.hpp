@@ -6,9 +6,12 @@
 
 #include "pcbmesh/base/diagnostics.hpp"
 #include "pcbmesh/board/board.hpp"
+#include "pcbmesh/compose/compose.hpp"
 #include "pcbmesh/study/study.hpp"
 
 namespace pcbmesh::pipeline {
+
+using compose::PortPlaces;
 
 /// A study with ports, and what to say about it.
 struct StartedStudy {
@@ -18,7 +21,7 @@ struct StartedStudy {
   Diagnostics diagnostics;
 };
 
-/// Proposes lumped ports for study.nets from their pins and cuts. @throws Error as compose().
-[[nodiscard]] StartedStudy start_study(const board::Board& board, study::Study study);
+/// Proposes lumped ports for study.nets. @throws Error as compose().
+[[nodiscard]] StartedStudy start_study(const board::Board& board, study::Study study, PortPlaces places = PortPlaces::ends);
 
 }  // namespace pcbmesh::pipeline

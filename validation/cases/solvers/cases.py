@@ -32,25 +32,48 @@ def port(name, net, side, ohm, reference="GND", **more):
 
 # ---- cavity -------------------------------------------------------------------------------------------------------
 
-def cavity(folder, edge_mm, size=(100, 90, 70), **run):
+def cavity(folder, edge_mm, size=(100, 90, 70), mode="solid", **run):
     """A box of vacuum between two solid planes, electric walls around."""
     made = board("cavity", [("top", 1.0), ("space", size[2], 1.0, 0.0), ("bottom", 1.0)], rect(0, 0, size[0], size[1]), ["LID", "GND"],
                  planes=[{"layer": "top", "net": "LID"}, {"layer": "bottom", "net": "GND"}])
     wanted = exact.cavity_hz([MM * s for s in size])
-    solved = solve(made, study("eigenmode", edge_mm, boundaries={"all": "pec"}, modes={"number": 4, "above": 0.95 * wanted[0]}), folder, **run)
+    solved = solve(made, study("eigenmode", edge_mm, boundaries={"all": "pec"}, conductors={"mode": mode, "surface": "pec"}, modes={"number": 4, "above": 0.95 * wanted[0]}), folder, **run)
     found = solved.resonances_hz()
     return solved, [(f, w) for f, w in zip(found, wanted)][:3]
 
 
+def box_cavity(folder, n, size=(100, 90, 70), **run):
+    """The same box of n x n x n bricks, each cut into two prisms, diagonals turning from brick to brick; the first k0^2, lengths in units of the
+    longest side. The bricks are drawn as triangles of copper in two nets, which alternate so that no edge between them is lost."""
+    def corner(i, j):
+        return [size[0] * i / n, size[1] * j / n]
+
+    triangles = {"A": [], "B": []}
+    for i in range(n):
+        for j in range(n):
+            square = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)]
+            halves = ((0, 1, 2), (0, 2, 3)) if (i + j) % 2 == 0 else ((0, 1, 3), (1, 2, 3))
+            for half, net in zip(halves, "AB" if i % 2 == 0 else "BA"):
+                triangles[net].append([square[corner] for corner in half])
+    made = board("box", [("top", 1.0), ("space", size[2], 1.0, 0.0), ("bottom", 1.0)], rect(0, 0, size[0], size[1]), ["A", "B", "GND"],
+                 polygons=[{"layer": "top", "net": net, "points": points} for net, each in triangles.items() for points in each],
+                 planes=[{"layer": "bottom", "net": "GND"}])
+    solved = solve(made, study("eigenmode", size[0], boundaries={"all": "pec"}, modes={"number": 3, "above": 0.95 * exact.cavity_hz([MM * s for s in size])[0]}, seed="delaunay",
+                               conductors={"mode": "sheet", "surface": "pec"},
+                               mesh={"height_policy": "none", "sublayers": "none", "elements_per_dielectric": n, "min_angle_deg": 1}), folder, **run)
+    return solved, (2 * math.pi * solved.resonances_hz()[0] * MM * size[0] / exact.LIGHT) ** 2
+
+
 # ---- lines --------------------------------------------------------------------------------------------------------
 
-def tem_line(folder, edge_mm, hz=3e9, tan_delta=0.0, ohm_factor=1.0, boundaries=None, eps_r=4.0, **run):
+def tem_line(folder, edge_mm, hz=3e9, tan_delta=0.0, ohm_factor=1.0, boundaries=None, eps_r=4.0, mode="solid", **run):
     """Parallel plates 20 mm wide with magnetic side walls, 10 mm apart, 100 mm long: TEM, known to every digit."""
     ohm = exact.ETA0 / math.sqrt(eps_r) / 2
     made = board("line", [("top", 1.0), ("core", 10.0, eps_r, tan_delta), ("bottom", 1.0)], rect(-10, -10, 110, 30), ["A", "GND"],
                  planes=[{"layer": "top", "net": "A"}, {"layer": "bottom", "net": "GND"}])
     ports = [port("p1", "A", "xmin", ohm * ohm_factor), port("p2", "A", "xmax", ohm * ohm_factor)]
-    solved = solve(made, study("driven", edge_mm, ports=ports, sweep=[hz], region=[0, 0, 100, 20], boundaries=boundaries, mesh={"height_policy": "none", "sublayers": "none"}), folder, **run)
+    solved = solve(made, study("driven", edge_mm, ports=ports, sweep=[hz], region=[0, 0, 100, 20], boundaries=boundaries, conductors={"mode": mode, "surface": "pec"},
+                               mesh={"height_policy": "none", "sublayers": "none"}), folder, **run)
     s = solved.touchstone()[0][1]
     k = 2 * math.pi * hz / exact.LIGHT * cmath.sqrt(eps_r * (1 - 1j * tan_delta))
     wanted = exact.line_s(ohm / cmath.sqrt(1 - 1j * tan_delta), 1j * k, 0.1, ohm * ohm_factor)
@@ -128,7 +151,7 @@ def coaxial_via(folder, edge_mm=0.3, at_copper_mm=0.05, drill=0.4, outer=2.0, he
     return solved, solved.capacitance()["SIG", "SIG"], per_eps * (4.0 * height + 0.1)
 
 
-def coaxial_line(folder, edge_mm=0.4, hz=3e9, height=10.0, drill=0.6, outer=2.0, eps_r=4.0, ohm_factor=1.0, copper=0.01):
+def coaxial_line(folder, edge_mm=0.4, hz=3e9, height=10.0, drill=0.6, outer=2.0, eps_r=4.0, ohm_factor=1.0, copper=0.01, **run):
     """A barrel in a round board with an electric wall about it: a coaxial line, a coaxial port in the antipad at each end."""
     ohm = exact.ETA0 / math.sqrt(eps_r) * math.log(outer / drill) / (2 * math.pi)
     antipad = 0.99 * outer
@@ -137,21 +160,23 @@ def coaxial_line(folder, edge_mm=0.4, hz=3e9, height=10.0, drill=0.6, outer=2.0,
     ports = [{"name": name, "net": "SIG", "at": {"point": [0, 0], "layer": layer}, "shape": "coaxial", "impedance": ohm * ohm_factor} for name, layer in (("p1", "top"), ("p2", "bottom"))]
     sides = {"all": "none", **{side: "pec" for side in ("xmin", "xmax", "ymin", "ymax", "side")}}
     solved = solve(made, study("driven", edge_mm, ports=ports, sweep=[hz], boundaries=sides, seed="delaunay", conductors={"mode": "hollow", "surface": "pec"},
-                               mesh={"height_policy": "none", "sublayers": "none", "elements_per_wavelength": 25, "tolerance": "1um"}, arcs={"sagitta": "5um"}), folder)
+                               mesh={"height_policy": "none", "sublayers": "none", "elements_per_wavelength": 25, "tolerance": "1um"}, arcs={"sagitta": "5um"}), folder, **run)
     s = solved.touchstone()[0][1]
     k = 2 * math.pi * hz / exact.LIGHT * math.sqrt(eps_r)
     return solved, s, exact.line_s(ohm, 1j * k, MM * height, ohm * ohm_factor)
 
 
-def coupled_lines(folder, edge_mm, at_copper_mm, strips=((-0.7, 0.3), (0.0, 0.3), (0.7, 0.3)), height=1.0, eps_r=4.0, half=2.0, slice_mm=0.02, **mesh):
-    """Thin strips (middle, width) midway between planes, a slice of their length: the capacitance matrix per metre."""
+def coupled_lines(folder, edge_mm, at_copper_mm, strips=((-0.7, 0.3), (0.0, 0.3), (0.7, 0.3)), height=1.0, eps_r=4.0, half=2.0, slice_mm=0.02, ply_mm=0, run=None, **mesh):
+    """Thin strips (middle, width) midway between planes, a slice of their length: the capacitance matrix per metre. `ply_mm`: the dielectric is drawn with
+    plies of this thickness beside the strips, from which heights can grow."""
     nets = [f"L{i}" for i in range(len(strips))]
-    made = board("coupled", [("top", 0.02), ("upper", height / 2, eps_r, 0.0), ("mid", 0.02), ("lower", height / 2, eps_r, 0.0), ("bottom", 0.02)],
+    near = [("near_upper", ply_mm, eps_r, 0.0), ("mid", 0.02), ("near_lower", ply_mm, eps_r, 0.0)] if ply_mm else [("mid", 0.02)]
+    made = board("coupled", [("top", 0.02), ("upper", height / 2 - ply_mm, eps_r, 0.0), *near, ("lower", height / 2 - ply_mm, eps_r, 0.0), ("bottom", 0.02)],
                  rect(-1, -half - 1, slice_mm + 1, half + 1), nets + ["GND"],
                  tracks=[{"layer": "mid", "net": net, "width": w, "points": [[-0.5, y], [slice_mm + 0.5, y]]} for net, (y, w) in zip(nets, strips)],
                  planes=[{"layer": "top", "net": "GND"}, {"layer": "bottom", "net": "GND"}])
     solved = solve(made, study("electrostatic", edge_mm, region=[0, -half, slice_mm, half], seed="delaunay", conductors={"mode": "sheet", "surface": "pec"},
-                               mesh={"edge_at_copper": at_copper_mm, "growth": 0.4, **mesh}), folder)
+                               mesh={"edge_at_copper": at_copper_mm, **{"growth": 0.4, **mesh}}), folder, **(run or {}))
     found = solved.capacitance()
     wanted = exact.strips_between_planes([(MM * (y - w / 2), MM * (y + w / 2)) for y, w in strips], MM * height, eps_r)
     return solved, [[found[a, b] / (MM * slice_mm) for b in nets] for a in nets], wanted
@@ -170,4 +195,22 @@ def via_transition(folder, edge_mm=0.6, at_copper_mm=0.25, hz=(2e9, 6e9), tan_de
     ports = [port("p1", "LINE", "xmin", ports_ohm[0]), port("p2", "LINE", "xmax", ports_ohm[1])]
     solved = solve(made, study("driven", edge_mm, ports=ports, sweep=hz, region=[-3, -2, 3, 2], air=(1, 1), seed="delaunay", boundaries={"all": "absorbing", "xmin": "none", "xmax": "none"},
                                conductors={"mode": "hollow", "surface": "lossy"}, mesh={"edge_at_copper": at_copper_mm, "growth": 0.6, "height_policy": "none", "sublayers": "none"}), folder, **run)
+    return solved, solved.touchstone()
+
+
+# ---- wave ports ---------------------------------------------------------------------------------------------------
+
+def guided(folder, kind, edge_mm, at_copper_mm, hz=(2e9,), length=10.0, eps_r=None, half=None, air=3.0, kinds=("wave", "wave"), ohm=50, boundaries=None, tan_delta=0.0, mode="sheet", **mesh):
+    """A strip or microstrip from side to side of the region; wave ports cover the whole of an end."""
+    width, eps_r, half = {"stripline": (0.5, eps_r or 4.0, half or 1.5), "microstrip": (1.1, eps_r or 3.66, half or 3.0)}[kind]
+    if kind == "stripline":
+        layers, air, on = [("top", 0.035), ("upper", 0.5, eps_r, tan_delta), ("mid", 0.035), ("lower", 0.5, eps_r, tan_delta), ("bottom", 0.035)], 0, "mid"
+    else:
+        layers, on = [("top", 0.035), ("core", 0.508, eps_r, tan_delta), ("bottom", 0.035)], "top"
+    made = board(kind, layers, rect(-2, -half - 2, length + 2, half + 2), ["LINE", "GND"],
+                 tracks=[{"layer": on, "net": "LINE", "width": width, "points": [[-1, 0], [length + 1, 0]]}],
+                 planes=[{"layer": layer, "net": "GND"} for layer in (("top", "bottom") if kind == "stripline" else ("bottom",))])
+    ends = [port(name, "LINE", side, ohm, **({"kind": "wave", "width": 2 * half} if each == "wave" else {})) for name, side, each in zip(("p1", "p2"), ("xmin", "xmax"), kinds)]
+    solved = solve(made, study("driven", edge_mm, ports=ends, sweep=hz, region=[0, -half, length, half], air=(air, 0), seed="delaunay", boundaries=boundaries,
+                               conductors={"mode": mode, "surface": "pec"}, mesh={"edge_at_copper": at_copper_mm, "growth": 0.5, **mesh}), folder)
     return solved, solved.touchstone()

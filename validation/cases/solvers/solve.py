@@ -61,11 +61,21 @@ class Solved:
                 out[a, b] = out[b, a] = farad
         return out
 
+    def port_impedances(self):
+        """Ohm, as the solver's port results state them: of a wave port what its mode has."""
+        return [float(line.split()[3]) for line in (self.folder / f"{self.name}.ports.txt").read_text().splitlines() if line.startswith("# port ")]
+
     def resonances_hz(self):
-        """Ascending."""
-        part = (self.folder / f"{self.name}.modes.txt").read_text().split("# stored")[0]
-        rows = [line.split() for line in part.splitlines() if line and line[0] != "#"]
-        return sorted(float(row[1]) for row in rows if len(row) > 1)
+        """Ascending: the rows below the first heading, which GetDP repeats for every mode."""
+        heading, found = None, []
+        for line in (self.folder / f"{self.name}.modes.txt").read_text().splitlines():
+            if line.startswith("#"):
+                heading = heading or line
+                if line != heading:
+                    break
+            elif len(line.split()) > 1:
+                found.append(float(line.split()[1]))
+        return sorted(found)
 
 
 def solve(board, study, folder, solver="getdp", arguments=(), environment=None):

@@ -6,20 +6,22 @@
 #include <numeric>
 #include <vector>
 
+#include "pcbmesh/base/error.hpp"
 #include "pcbmesh/mesh/planar_mesh.hpp"
 
-namespace pcbmesh::view {
+namespace pcbmesh::mesh {
 
-/// Directed planar edge with the triangle to its left and, if any, the triangle to its right.
+/// Edge of the planar mesh, directed so that there is a triangle to its left.
 struct PlanarEdge {
   std::int32_t a = 0, b = 0;
   std::int32_t left = 0;
-  std::int32_t right = -1;
+  std::int32_t right = -1;  ///< the triangle on its other side, or -1 on the outline
 };
 
-/// Calls visit(PlanarEdge) for every edge once, ordered by lower vertex. @cost O(triangles x log of the degree).
+/// Calls visit(PlanarEdge) for every edge once, ordered by lower, then by higher vertex.
+/// @cost O(triangles x log of the degree) time, 36 bytes per triangle.
 template <class Visit>
-void visit_planar_edges(const mesh::PlanarMesh& planar, Visit&& visit) {
+void visit_planar_edges(const PlanarMesh& planar, Visit&& visit) {
   struct HalfEdge {
     std::int32_t high = 0, triangle = 0;
     bool ascends = false;  ///< runs from the lower to the higher vertex
@@ -49,6 +51,7 @@ void visit_planar_edges(const mesh::PlanarMesh& planar, Visit&& visit) {
     for (auto here = first; here != last;) {
       const auto mate = here + 1;
       const bool has_mate = mate != last && mate->high == here->high;
+      PCBMESH_ASSERT(!has_mate || (mate->ascends != here->ascends && (mate + 1 == last || (mate + 1)->high != here->high)));
       visit(PlanarEdge{here->ascends ? low : here->high, here->ascends ? here->high : low, here->triangle,
                        has_mate ? mate->triangle : -1});
       here = has_mate ? mate + 1 : mate;
@@ -56,4 +59,11 @@ void visit_planar_edges(const mesh::PlanarMesh& planar, Visit&& visit) {
   }
 }
 
-}  // namespace pcbmesh::view
+/// All of them.
+[[nodiscard]] inline std::vector<PlanarEdge> edges_of(const PlanarMesh& planar) {
+  std::vector<PlanarEdge> edges;
+  visit_planar_edges(planar, [&](const PlanarEdge& edge) { edges.push_back(edge); });
+  return edges;
+}
+
+}  // namespace pcbmesh::mesh
