@@ -33,6 +33,7 @@ PIECES = {
                            f"--port B,net=unconnected-(J22-Pad1),reference=GND,at=124.95:-53:F.Cu,shape=gap --port P2,net=unconnected-(J22-Pad1),at=ymin {LAUNCH_MESH} {LAUNCH_PIECE}"),
     "stub": ("In1.Cu", f"--region 109,-99.9,117,-95.2 --port P1,net=Net-(J10-Pad1),at=xmin --port P2,net=Net-(J10-Pad1),at=xmax {LINE_MESH} {LONG_PIECE}"),
     "meander": ("In1.Cu", f"--region 122.4,-64.7,125.75,-58.4 --port P1,net=unconnected-(J22-Pad1),at=ymax --port P2,net=unconnected-(J22-Pad1),at=ymin {LINE_MESH} {LONG_PIECE}"),
+    "meander_coarse": ("In1.Cu", f"--region 122.4,-64.7,125.75,-58.4 --port P1,net=unconnected-(J22-Pad1),at=ymax --port P2,net=unconnected-(J22-Pad1),at=ymin {LINE_MESH.format(edge='0.13mm')} --sweep 200MHz,900MHz,1.8GHz,2.7GHz,3.6GHz"),
 }
 
 TOKEN = re.compile(r'"(?:[^"\\]|\\.)*"|[()]|[^\s()"]+')
