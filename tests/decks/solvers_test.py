@@ -194,6 +194,7 @@ class Solvers(InFolder):
         tags = {f["name"]: f["id"] for f in json.loads((self.out / "palace/b.tags.json").read_text())["faces"]}
         jsonschema.Draft7Validator(json.loads((ROOT / "tests/decks/palace.schema.json").read_text())).validate(deck)
         boundaries = deck["Boundaries"]
+        self.assertNotIn("WavePortPEC", boundaries)
         self.assertEqual(deck["Model"]["L0"], 1.0)
         self.assertFalse(deck["Model"]["RefineCrackElements"])
         self.assertLessEqual(deck["Solver"]["Linear"]["Tol"], 1e-10, "or the network is not reciprocal to 1e-6")
@@ -206,6 +207,14 @@ class Solvers(InFolder):
         self.assertEqual({c["Conductivity"] for c in boundaries["Conductivity"]}, {5.8e7})
         named = set(sum(([*b["Attributes"]] for key, group in boundaries.items() for b in (group if isinstance(group, list) else [group])), []))
         self.assertEqual(named, set(tags.values()), "every face group has a condition")
+        waves = [{**cases.port(name, "A", side, 50), "kind": "wave"} for name, side in (("p1", "xmin"), ("p2", "xmax"))]
+        (self.out / "w.json").write_text(json.dumps({**study, "ports": waves, "boundaries": {**study["boundaries"], "xmin": "none", "xmax": "none"}}))
+        done = run("mesh", self.out / "b.json", "--study", self.out / "w.json", "--for", "palace", "-o", self.out / "wave")
+        self.assertEqual((done.returncode, "deck.wave_port_mode" in done.stderr), (0, True), done.stderr)
+        deck = json.loads((self.out / "wave/b.palace.json").read_text())
+        jsonschema.Draft7Validator(json.loads((ROOT / "tests/decks/palace.schema.json").read_text())).validate(deck)
+        boundaries = deck["Boundaries"]
+        self.assertEqual(boundaries["WavePortPEC"]["Attributes"], sum((c["Attributes"] for c in boundaries["Conductivity"]), []), "lossy copper bounds the mode as if it were ideal")
         sif = (self.out / "elmer/b.port1.sif").read_text()
         for word in ("Good Conductor BC", "Absorbing BC", "Electric Robin Coefficient im", "Magnetic Boundary Load im 3", "E re {e}"):
             self.assertIn(word, sif)
