@@ -76,9 +76,13 @@ class Solved:
 
     def resonances_hz(self):
         """Ascending."""
-        part = (self.folder / f"{self.name}.modes.txt").read_text().lstrip().split("\n# ")[0]
-        rows = [line.split() for line in part.splitlines() if line and line[0] != "#"]
-        return sorted(float(row[1]) for row in rows if len(row) > 1)
+        hz = []
+        for line in (self.folder / f"{self.name}.modes.txt").read_text().splitlines():
+            if line.startswith("#") and hz:
+                break
+            if line and line[0] != "#":
+                hz.append(float(line.split()[1]))
+        return sorted(hz)
 
 
 def solve(board, study, folder, solver="getdp", arguments=(), environment=None):
