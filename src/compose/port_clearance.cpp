@@ -25,6 +25,8 @@ using Place = std::array<double, 2>;
 constexpr double beside_nm = 25;
 /// What is narrower than this is rounding, or closed by the tolerance of the overlay.
 constexpr double sliver_nm = 500;
+/// The least tolerance of the overlay.
+constexpr double least_apart_nm = 1000;
 /// Share of an edge that may miss its conductor; the mesh is held to the same.
 constexpr double relative_tolerance = 2e-3;
 /// Lines across a flat port, besides one through the middle of all that meets it.
@@ -41,6 +43,13 @@ int winding(const Ring& ring, Place p) {
     if (by < ay && side < 0) --turns;
   }
   return turns;
+}
+
+/// Of a point from a segment.
+double distance(Place p, Place a, Place b) {
+  const double ux = b[0] - a[0], uy = b[1] - a[1], square = ux * ux + uy * uy;
+  const double share = square > 0 ? std::clamp(((p[0] - a[0]) * ux + (p[1] - a[1]) * uy) / square, 0.0, 1.0) : 0;
+  return std::hypot(p[0] - a[0] - share * ux, p[1] - a[1] - share * uy);
 }
 
 Point rounded(Place p) {
@@ -76,9 +85,32 @@ class Clearance {
   }
 
   /// Empty = nothing is wrong.
-  [[nodiscard]] std::string fault() const { return port_.faces == model::PortFaces::wall ? fault_of_wall() : fault_of_cap(); }
+  [[nodiscard]] std::string fault() const {
+    if (std::string text = fault_of_corners(); !text.empty()) return text;
+    return port_.faces == model::PortFaces::wall ? fault_of_wall() : fault_of_cap();
+  }
 
  private:
+  /// No tolerance is small enough to keep apart what lies nearer than this, and a port that is moved is none.
+  [[nodiscard]] std::string fault_of_corners() const {
+    std::vector<Point> corners;
+    if (port_.faces == model::PortFaces::wall)
+      corners.assign(port_.line.begin(), port_.line.end());
+    else
+      for (const Ring& ring : footprint_) corners.insert(corners.end(), ring.begin(), ring.end());
+    for (const model::BodyShape* shape : near_) {
+      if (shape->body != 0) continue;
+      for (const Ring& ring : shape->rings)
+        for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++)
+          for (const Point p : corners)
+            if (const double apart = distance(place_of(p), place_of(ring[j]), place_of(ring[i]));
+                apart > 1 && apart < least_apart_nm)
+              return fmt::format("lies {:.0f} nm from the side of the domain at {}; move it, or the side", apart,
+                                 place_text(p));
+    }
+    return "";
+  }
+
   /// What lies at a place, through the height of the domain.
   struct Column {
     std::vector<std::int32_t> present;  ///< bodies, ascending

@@ -145,7 +145,7 @@ class Measured(unittest.TestCase):
         early = networks.step_response(hz, meander, 1.0, seconds)
         self.assertLess(numpy.min(early[seconds < 0]), -0.2, "the meander's connector lies before the reference plane")
         self.assertLess(numpy.max(abs(meander[hz < 2.5e9])), 1.0)
-        self.assertGreater(numpy.max(abs(meander)), 1.05, "an open line above 1: the standards were not ideal")
+        self.assertGreater(numpy.max(abs(meander)), 1.05, "an open line above 1: a connector was taken away that is not there")
 
     def test_bounds_are_judged_by_what_the_curves_show(self):
         seconds = numpy.linspace(-0.5e-9, 1.5e-9, 2001)

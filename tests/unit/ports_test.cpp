@@ -550,6 +550,47 @@ TEST(WrongPorts, OnACutOutOfTheBoard) {
   }
 }
 
+/// What no shape of the layout shows: a barrel without a pad in a gap, a domain that bends away between two ends.
+TEST(WrongPorts, WhatBarsAFaceIsNamed) {
+  Layout gap;
+  gap.pad(0, line, rectangle(-mm, -mm, 0, mm))
+      .pad(0, other, rectangle(mm, -mm, 2 * mm, mm))
+      .via({500 * um, 300 * um}, 200 * um, 0, gnd);
+  study::Port flat = port("F", {-500 * um, 0}, study::PortShape::gap);
+  flat.reference = "OTHER";
+  expect_words(refusal(gap, flat), {"/ports/0: port 'F' at (0.5, 0) mm is barred near (0.", "copper of net 'GND' stands in it",
+                                    "move it or make it narrower"});
+  flat.width = 300 * um;
+  EXPECT_EQ(refusal(gap, flat), "") << "beside the barrel";
+  Layout layout;
+  layout.plane(1).track(0, line, {0, -8 * mm}, {0, 8 * mm});
+  study::Study study;
+  study.region = study::RegionKind::polygon;
+  study.polygon = {{-3 * mm, -3 * mm}, {3 * mm, -3 * mm}, {3 * mm, 3 * mm}, {0, -100 * um}, {-3 * mm, 3 * mm}};
+  study.ports = {port("V", {0, -200 * um})};
+  EXPECT_EQ(refusal(layout, study), "");
+  study.ports = {port("V", {0, -90 * um})};
+  expect_words(refusal(layout, study), {"port 'V'", "lies outside the domain"});
+  Layout tube;
+  tube.plane(1).track(0, line, {-8 * mm, 0}, {8 * mm, 0}).cutout(rectangle(-mm, 200 * um, mm, 300 * um));
+  expect_words(refusal(tube, port("T", {0, 0})),
+               {"port 'T' at (0, 0) mm touches net 'LINE' along 900 um of its 1000 um long edge",
+                "near (0, 0.25) mm the board is cut out or ends"});
+}
+
+TEST(WrongPorts, AHairFromTheSideOfTheDomain) {
+  Layout layout;
+  layout.plane(1).track(0, line, {0, -8 * mm}, {0, 8 * mm});
+  study::Study study = boxed({port("P", {0, 0})});
+  study.box = geometry::Box{{-4 * mm, -4 * mm}, {500 * um + 84, 4 * mm}};
+  expect_words(refusal(layout, study),
+               {"/ports/0: port 'P' at (0, 0) mm lies 84 nm from the side of the domain at (0.5, 0) mm"});
+  study.box->max.x = 500 * um;
+  EXPECT_EQ(refusal(layout, study), "") << "up to the side itself";
+  study.box->max.x = 502 * um;
+  EXPECT_EQ(refusal(layout, study), "");
+}
+
 /// What only the mesh can tell: copper of another net crosses the ring, so that faces are missing.
 TEST(WrongPorts, CopperInTheWayIsFoundInTheMesh) {
   Layout layout;

@@ -17,6 +17,7 @@ LINE_MESH = "--air-above 0.6mm --longest-edge 0.4mm --growth 0.6 --height-growth
 # The launch over the cut-out reaches down to In2, 1.4 mm below; its pad is large, its mesh coarser.
 LAUNCH_MESH = "--air-above 0.8mm --longest-edge 0.8mm --growth 1 --height-growth 3 --edge-at-copper {launch_edge}"
 SHORT_PIECE = "--sweep 200MHz,2GHz,4GHz,6GHz"
+LAUNCH_PIECE = "--sweep 200MHz,1GHz,2GHz,3GHz,4GHz,5GHz,6GHz"
 LONG_PIECE = "--sweep 200MHz,900MHz,1.8GHz,2.7GHz,3.6GHz,4.2GHz,4.8GHz,5.4GHz,6GHz"
 
 # (lowest copper layer kept, flags).
@@ -27,9 +28,9 @@ PIECES = {
     "short": ("In1.Cu", f"--region 99.57,-66.8,102,-65.2 --port P1,net=unconnected-(J3-Pad1),at=xmin {LINE_MESH} {SHORT_PIECE}"),
     "load": ("In1.Cu", f"--region 99.57,-57,103,-55 --port P1,net=Net-(R2-Pad1),at=xmin --port R2,net=Net-(R2-Pad1),reference=GND,at=R2.1,shape=gap {LINE_MESH} {SHORT_PIECE}"),
     "launch": ("In2.Cu", "--region 94,-99.8,99.62,-92.2 --boundary xmin=none --port A,net=Net-(J10-Pad1),reference=GND,at=95:-95.1:F.Cu,shape=gap "
-               f"--port B,net=Net-(J10-Pad1),reference=GND,at=95:-96.9:F.Cu,shape=gap --port P2,net=Net-(J10-Pad1),at=xmax {LAUNCH_MESH} {SHORT_PIECE}"),
+               f"--port B,net=Net-(J10-Pad1),reference=GND,at=95:-96.9:F.Cu,shape=gap --port P2,net=Net-(J10-Pad1),at=xmax {LAUNCH_MESH} {LAUNCH_PIECE}"),
     "launch_whole_plane": ("In1.Cu", "--region 120.25,-57.52,127.85,-52 --boundary ymax=none --port A,net=unconnected-(J22-Pad1),reference=GND,at=123.15:-53:F.Cu,shape=gap "
-                           f"--port B,net=unconnected-(J22-Pad1),reference=GND,at=124.95:-53:F.Cu,shape=gap --port P2,net=unconnected-(J22-Pad1),at=ymin {LAUNCH_MESH} {SHORT_PIECE}"),
+                           f"--port B,net=unconnected-(J22-Pad1),reference=GND,at=124.95:-53:F.Cu,shape=gap --port P2,net=unconnected-(J22-Pad1),at=ymin {LAUNCH_MESH} {LAUNCH_PIECE}"),
     "stub": ("In1.Cu", f"--region 109,-99.9,117,-95.2 --port P1,net=Net-(J10-Pad1),at=xmin --port P2,net=Net-(J10-Pad1),at=xmax {LINE_MESH} {LONG_PIECE}"),
     "meander": ("In1.Cu", f"--region 122.4,-64.7,125.75,-58.4 --port P1,net=unconnected-(J22-Pad1),at=ymax --port P2,net=unconnected-(J22-Pad1),at=ymin {LINE_MESH} {LONG_PIECE}"),
 }

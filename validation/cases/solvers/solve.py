@@ -75,14 +75,16 @@ class Solved:
         return [float(line.split()[1]) for line in part.splitlines() if line]
 
     def resonances_hz(self):
-        """Ascending."""
-        hz = []
+        """Ascending: the rows below the first heading, which GetDP repeats for every mode."""
+        heading, found = None, []
         for line in (self.folder / f"{self.name}.modes.txt").read_text().splitlines():
-            if line.startswith("#") and hz:
-                break
-            if line and line[0] != "#":
-                hz.append(float(line.split()[1]))
-        return sorted(hz)
+            if line.startswith("#"):
+                heading = heading or line
+                if line != heading:
+                    break
+            elif len(line.split()) > 1:
+                found.append(float(line.split()[1]))
+        return sorted(found)
 
 
 def solve(board, study, folder, solver="getdp", arguments=(), environment=None):
