@@ -5,11 +5,13 @@ validation/cases/solvers."""
 import cmath
 import json
 import math
+import os
 import re
 import shlex
+import subprocess
 import unittest
 
-from program import ROOT, run
+from program import PROGRAM, ROOT, run
 from solver_cases import InFolder, cases, exact, require, solve
 
 require(solve.has_getdp(), "getdp is not installed; scripts/setup installs it")
@@ -114,6 +116,38 @@ class Solvers(InFolder):
                 self.assertIn(word, done.stderr, arguments)
             self.assertEqual([p.name for p in self.out.glob("x*")], [], arguments)
 
+    def test_what_palace_prints_becomes_the_tables_of_the_other_decks(self):
+        """Files that Palace 0.17 left, read by the run script with `true` in Palace's place."""
+        board = cases.board("b", [("top", 0.035), ("core", 1, 1.0, 0.0), ("bottom", 0.035)], cases.rect(-2, -2, 12, 6), ["A", "it's B"],
+                            planes=[{"layer": "top", "net": "A"}, {"layer": "bottom", "net": "it's B"}])
+        driven = {"problem": "driven", "ports": [cases.port("p 1", "A", "xmin", 50, "it's B"), cases.port("p2", "A", "xmax", 200, "it's B")], "sweep": {"list": [3e9]}}
+        (self.out / "b.json").write_text(json.dumps(board))
+        for problem, file, lines, result in (
+                (driven, "port-S.csv", ["f (GHz), |S[1][1]| (dB), arg(S[1][1]) (deg.), |S[2][1]| (dB), arg(S[2][1]) (deg.), |S[1][2]| (dB), arg(S[1][2]) (deg.), |S[2][2]| (dB), arg(S[2][2]) (deg.)",
+                                        " 3.00000000e+00, -inf, +0.0, -6.020599913280e+00, +9.000000000000e+01, -6.020599913280e+00, +9.000000000000e+01, -2.000000000000e+01, -1.800000000000e+02"], "b.ports.txt"),
+                ({"problem": "eigenmode"}, "eig.csv", ["m, Re{f} (GHz), Im{f} (GHz), Q, Error (Bkwd.), Error (Abs.)", " 1.00e+00, +2.277713923816e+00, +1.138828491907e-02, +1.000037498984e+02, +5.1e-14, +7.5e-12"], "b.modes.txt"),
+                ({"problem": "electrostatic"}, "terminal-C.csv", ["i, C[i][1] (F), C[i][2] (F)", " 1.00e+00, +2.5e-12, -2.25e-12", " 2.00e+00, -2.25e-12, +3.5e-12"], "b.capacitance.txt")):
+            (self.out / "s.json").write_text(json.dumps({"schema_version": 1, "region": {"kind": "box", "box": {"min": [0, 0], "max": [10, 4]}}, "air": {"above": 0, "below": 0, "around": 0},
+                                                         "conductors": {"mode": "hollow", "surface": "pec"}, "boundaries": {"all": "none"}, **problem}))
+            done = run("mesh", self.out / "b.json", "--study", self.out / "s.json", "--for", "palace", "-o", self.out / "b.msh")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            (self.out / "postpro/b").mkdir(parents=True, exist_ok=True)
+            (self.out / "postpro/b" / file).write_text("\n".join(lines) + "\n")
+            done = subprocess.run(["sh", self.out / "b.run.sh"], capture_output=True, text=True, env={**os.environ, "PALACE": "true", "ORDER": "3", "PCBMESH": str(PROGRAM)})
+            self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+            self.assertEqual(json.loads((self.out / "b.order.palace.json").read_text())["Solver"]["Order"], 3)
+            rows = [line.split() for line in (self.out / result).read_text().splitlines() if not line.startswith("#")]
+            if file == "port-S.csv":
+                self.assertEqual([row[:3] for row in rows], [["3000000000", *pair] for pair in ("11", "12", "21", "22")], "frequency, excited, observed")
+                for row, wanted in zip(rows, (0, 1j, 0.25j, -0.1)):  # powers turned into waves of 1 V into 50 and 200 ohm
+                    self.assertAlmostEqual(complex(float(row[3]), float(row[4])), wanted, places=11)
+                self.assertIn("# port 2 200 p2", (self.out / result).read_text())
+            elif file == "eig.csv":
+                self.assertEqual(rows, [["0", "2277713923.816"], ["0", "100.0037498984"]])
+            else:
+                self.assertEqual(rows, [["1", "1", "2.5e-12"], ["1", "2", "-2.25e-12"], ["2", "2", "3.5e-12"]])
+                self.assertIn("# net 2 it's B\n", (self.out / result).read_text())
+
     def test_copper_that_floats_without_a_body_is_refused(self):
         """A skin or sheet without a net has no condition that any of these solvers knows: it would be as if it were not there."""
         board = cases.board("b", [("top", 0.035), ("upper", 0.5, 4.0, 0.0), ("mid", 0.035), ("lower", 0.5, 4.0, 0.0), ("bottom", 0.035)], cases.rect(0, 0, 10, 5), ["A", "GND"],
@@ -160,8 +194,10 @@ class Solvers(InFolder):
         tags = {f["name"]: f["id"] for f in json.loads((self.out / "palace/b.tags.json").read_text())["faces"]}
         jsonschema.Draft7Validator(json.loads((ROOT / "tests/decks/palace.schema.json").read_text())).validate(deck)
         boundaries = deck["Boundaries"]
+        self.assertNotIn("WavePortPEC", boundaries)
         self.assertEqual(deck["Model"]["L0"], 1.0)
         self.assertFalse(deck["Model"]["RefineCrackElements"])
+        self.assertLessEqual(deck["Solver"]["Linear"]["Tol"], 1e-10, "or the network is not reciprocal to 1e-6")
         self.assertEqual(deck["Solver"]["Driven"]["Samples"], [{"Type": "Point", "Freq": [1.0, 2.0]}])
         materials = {(m["Permittivity"], m["LossTan"]) for m in deck["Domains"]["Materials"]}
         self.assertEqual(materials, {(4.1, 0.013), (1.0, 0.0)})
@@ -171,6 +207,14 @@ class Solvers(InFolder):
         self.assertEqual({c["Conductivity"] for c in boundaries["Conductivity"]}, {5.8e7})
         named = set(sum(([*b["Attributes"]] for key, group in boundaries.items() for b in (group if isinstance(group, list) else [group])), []))
         self.assertEqual(named, set(tags.values()), "every face group has a condition")
+        waves = [{**cases.port(name, "A", side, 50), "kind": "wave"} for name, side in (("p1", "xmin"), ("p2", "xmax"))]
+        (self.out / "w.json").write_text(json.dumps({**study, "ports": waves, "boundaries": {**study["boundaries"], "xmin": "none", "xmax": "none"}}))
+        done = run("mesh", self.out / "b.json", "--study", self.out / "w.json", "--for", "palace", "-o", self.out / "wave")
+        self.assertEqual((done.returncode, "deck.wave_port_mode" in done.stderr), (0, True), done.stderr)
+        deck = json.loads((self.out / "wave/b.palace.json").read_text())
+        jsonschema.Draft7Validator(json.loads((ROOT / "tests/decks/palace.schema.json").read_text())).validate(deck)
+        boundaries = deck["Boundaries"]
+        self.assertEqual(boundaries["WavePortPEC"]["Attributes"], sum((c["Attributes"] for c in boundaries["Conductivity"]), []), "lossy copper bounds the mode as if it were ideal")
         sif = (self.out / "elmer/b.port1.sif").read_text()
         for word in ("Good Conductor BC", "Absorbing BC", "Electric Robin Coefficient im", "Magnetic Boundary Load im 3", "E re {e}"):
             self.assertIn(word, sif)

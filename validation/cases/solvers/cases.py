@@ -130,6 +130,17 @@ def microstrip_slice(folder, edge_mm, at_copper_mm, eps_r=3.66, width=1.1, heigh
     return solved, 1 / (exact.LIGHT * math.sqrt(farads[0] * farads[1])), farads[0] / farads[1]
 
 
+def strip(folder, surface="pec", mode="sheet", kind="lumped", boundaries=None, hz=2e9, tan_delta=(0.02, 0.01), width=None, **run):
+    """A strip between planes and two dielectrics, 10 mm long: one wall an impedance, the other a plane of symmetry, unless said."""
+    made = board("strip", [("top", 0.035), ("upper", 1.0, 4.0, tan_delta[0]), ("mid", 0.035), ("lower", 1.0, 2.0, tan_delta[1]), ("bottom", 0.035)], rect(-2, -5, 12, 5), ["LINE", "GND"],
+                 tracks=[{"layer": "mid", "net": "LINE", "width": 1.0, "points": [[-1, 0], [11, 0]]}], planes=[{"layer": "top", "net": "GND"}, {"layer": "bottom", "net": "GND"}])
+    ports = [port(name, "LINE", side, 50, kind=kind, width=width) for name, side in (("p1", "xmin"), ("p2", "xmax"))]
+    walls = boundaries or {"all": "none", "ymin": {"kind": "impedance", "ohms": 200}, "ymax": "pmc"}
+    solved = solve(made, study("driven", 1.2, ports=ports, sweep=[hz], region=[0, -3, 10, 3], boundaries=walls, seed="delaunay", conductors={"mode": mode, "surface": surface},
+                               mesh={"edge_at_copper": 0.4, "height_policy": "none", "sublayers": "none"}), folder, **run)
+    return solved, solved.touchstone()
+
+
 # ---- capacitances -------------------------------------------------------------------------------------------------
 
 def plates(folder, edge_mm=2.0, mode="solid", **run):

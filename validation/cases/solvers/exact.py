@@ -126,3 +126,7 @@ def gamma_of_two(s_short, s_long, difference):
     values = numpy.linalg.eigvals(transfer(s_long) @ numpy.linalg.inv(transfer(s_short)))
     wave = min(values, key=lambda v: v.imag)
     return -cmath.log(wave) / difference
+
+
+def skin_depth_m(hz, sigma_s_per_m):
+    return 1 / math.sqrt(math.pi * hz * 4e-7 * math.pi * sigma_s_per_m)

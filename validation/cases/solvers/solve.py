@@ -26,6 +26,10 @@ def has_dolfinx():
     return asked.returncode == 0
 
 
+def has_palace():
+    return bool(os.environ.get("PALACE")) and shutil.which(os.environ["PALACE"]) is not None
+
+
 class Solved:
     """One mesh that was solved: its counts, the unknowns, CPU seconds of the solver, and the folder."""
 
@@ -64,6 +68,11 @@ class Solved:
     def port_impedances(self):
         """Ohm, as the solver's port results state them: of a wave port what its mode has."""
         return [float(line.split()[3]) for line in (self.folder / f"{self.name}.ports.txt").read_text().splitlines() if line.startswith("# port ")]
+
+    def quality_factors(self):
+        """Of the modes, where the deck's solver says them."""
+        part = (self.folder / f"{self.name}.modes.txt").read_text().split("# quality factor\n")[1]
+        return [float(line.split()[1]) for line in part.splitlines() if line]
 
     def resonances_hz(self):
         """Ascending: the rows below the first heading, which GetDP repeats for every mode."""
