@@ -76,8 +76,8 @@ def elements_along_a_port():
             solved, found = s[layers]
             wanted = s[8][1]
             lines.append(f"| {length} mm | {layers} | {solved.prisms:,} | {abs(found[0][0] - wanted[0][0]):.4f} | {abs(found[1][0] - wanted[1][0]):.4f} | {math.degrees(cmath.phase(found[1][0] / wanted[1][0])):+.2f} degrees |")
-    lines += ["", "Two elements err less than a third as much as one. The error is that of the field about the line and its ends; the field in a port itself is uniform, and one element",
-              "holds it. Two are the rule because a port stands where a line does; they go through the whole layer, and `max_edge` of the port takes their place where a study wants one."]
+    lines += ["", "Two elements err less than a third as much as one. Only part of the error in phase grows with the length of the line: the run does not tell what the line, its ends and",
+              "the port contribute. Two are the rule because a port stands where a line does; they go through the whole layer, and `max_edge` of the port takes their place where a study wants one."]
     return lines
 
 
