@@ -10,19 +10,14 @@
 #include <vector>
 
 #include "pcbmesh/base/units.hpp"
-#include "pcbmesh/geometry/point.hpp"
+#include "pcbmesh/geometry/ring_contact.hpp"
 #include "pcbmesh/model/model.hpp"
 
 namespace pcbmesh::testing {
 
 inline bool covers(const model::BodyShape& shape, geometry::Point p) {
   int winding = 0;
-  for (const geometry::Ring& ring : shape.rings)
-    for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
-      const int turn = geometry::orientation(ring[j], ring[i], p);
-      if (ring[j].y <= p.y && ring[i].y > p.y && turn > 0) ++winding;
-      if (ring[j].y > p.y && ring[i].y <= p.y && turn < 0) --winding;
-    }
+  for (const geometry::Ring& ring : shape.rings) winding += geometry::winding_number(ring, p);
   return winding != 0;
 }
 

@@ -45,13 +45,6 @@ int winding(const Ring& ring, Place p) {
   return turns;
 }
 
-/// Of a point from a segment.
-double distance(Place p, Place a, Place b) {
-  const double ux = b[0] - a[0], uy = b[1] - a[1], square = ux * ux + uy * uy;
-  const double share = square > 0 ? std::clamp(((p[0] - a[0]) * ux + (p[1] - a[1]) * uy) / square, 0.0, 1.0) : 0;
-  return std::hypot(p[0] - a[0] - share * ux, p[1] - a[1] - share * uy);
-}
-
 Point rounded(Place p) {
   return {std::llround(p[0]), std::llround(p[1])};
 }
@@ -103,8 +96,7 @@ class Clearance {
       for (const Ring& ring : shape->rings)
         for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++)
           for (const Point p : corners)
-            if (const double apart = distance(place_of(p), place_of(ring[j]), place_of(ring[i]));
-                apart > 1 && apart < least_apart_nm)
+            if (const double apart = geometry::distance_to_segment(p, ring[j], ring[i]); apart > 1 && apart < least_apart_nm)
               return fmt::format("lies {:.0f} nm from the side of the domain at {}; move it, or the side", apart,
                                  place_text(p));
     }

@@ -2,6 +2,7 @@
 #include "pcbmesh/geometry/ring_contact.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace pcbmesh::geometry {
@@ -91,6 +92,24 @@ std::optional<Point> self_crossing(const Ring& ring) {
   const Contact found = sweep(edges, [](const Edge&, const Edge&) { return true; });
   if (found.kind != ContactKind::crossing) return std::nullopt;
   return found.at;
+}
+
+int winding_number(const Ring& ring, Point p) noexcept {
+  int winding = 0;
+  for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
+    const int turn = orientation(ring[j], ring[i], p);
+    if (ring[j].y <= p.y && ring[i].y > p.y && turn > 0) ++winding;
+    if (ring[j].y > p.y && ring[i].y <= p.y && turn < 0) --winding;
+  }
+  return winding;
+}
+
+double distance_to_segment(Point p, Point a, Point b) noexcept {
+  const double dx = static_cast<double>(b.x - a.x), dy = static_cast<double>(b.y - a.y);
+  const double px = static_cast<double>(p.x - a.x), py = static_cast<double>(p.y - a.y);
+  const double length2 = dx * dx + dy * dy;
+  const double share = length2 > 0 ? std::clamp((px * dx + py * dy) / length2, 0.0, 1.0) : 0;
+  return std::hypot(px - share * dx, py - share * dy);
 }
 
 int location(Point p, const Ring& ring) noexcept {

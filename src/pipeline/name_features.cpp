@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 
+#include "pcbmesh/geometry/ring_contact.hpp"
 #include "pcbmesh/pipeline/write_outputs.hpp"
 
 namespace pcbmesh::pipeline {
@@ -13,22 +14,9 @@ namespace {
 
 using geometry::Point;
 
-double distance_nm(Point p, Point a, Point b) {
-  const double dx = static_cast<double>(b.x - a.x), dy = static_cast<double>(b.y - a.y);
-  const double px = static_cast<double>(p.x - a.x), py = static_cast<double>(p.y - a.y);
-  const double length2 = dx * dx + dy * dy;
-  const double t = length2 > 0 ? std::clamp((px * dx + py * dy) / length2, 0.0, 1.0) : 0;
-  return std::hypot(px - t * dx, py - t * dy);
-}
-
 bool covers(const std::vector<geometry::Ring>& rings, Point p) {
   int winding = 0;
-  for (const geometry::Ring& ring : rings)
-    for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
-      const int turn = geometry::orientation(ring[j], ring[i], p);
-      if (ring[j].y <= p.y && ring[i].y > p.y && turn > 0) ++winding;
-      if (ring[j].y > p.y && ring[i].y <= p.y && turn < 0) --winding;
-    }
+  for (const geometry::Ring& ring : rings) winding += geometry::winding_number(ring, p);
   return winding != 0;
 }
 
@@ -44,7 +32,7 @@ double distance_nm(Point p, const geometry::Figure& figure, double best) {
   double least = best;
   for (const geometry::Ring& ring : rings)
     for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++)
-      least = std::min(least, distance_nm(p, ring[j], ring[i]));
+      least = std::min(least, geometry::distance_to_segment(p, ring[j], ring[i]));
   return least;
 }
 

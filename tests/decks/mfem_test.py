@@ -82,21 +82,7 @@ class Mfem(InFolder):
         self.assertTrue(all(f > 1e9 for f in solved.resonances_hz()))
 
     def test_changes_of_the_study_change_the_result_as_they_must(self):
-        """Loss tangent, port impedance, one boundary: each reaches the solver and does what the formula says."""
-        def line(**more):
-            _, s, wanted = cases.tem_line(self.out, 10, hz=1e9, solver="mfem", environment={"ORDER": "2"}, **more)
-            return s, wanted
-
-        s, wanted = line()
-        self.assertLess(abs(s[1][0] - wanted[1]), 1e-3)
-        lossy, wanted = line(tan_delta=0.05)
-        self.assertLess(abs(lossy[1][0] - wanted[1]), 1e-3)
-        self.assertLess(abs(lossy[1][0]), 0.91)
-        mismatched, wanted = line(ohm_factor=2)
-        self.assertLess(abs(mismatched[0][0] - wanted[0]), 1e-3)
-        self.assertGreater(abs(mismatched[0][0]), 0.2)
-        walled, _ = line(boundaries={"all": "none", "ymin": "pec", "ymax": "pec"})
-        self.assertLess(abs(walled[1][0]), 1e-3)
+        self.expect_changes_of_the_study("mfem", {"ORDER": "2"})
 
     @unittest.skipUnless(solve.has_getdp(), "getdp is not installed; scripts/setup installs it")
     def test_driven_agrees_with_getdp_on_the_same_prisms(self):

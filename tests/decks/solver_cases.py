@@ -35,3 +35,20 @@ class InFolder(unittest.TestCase):
 
     def tearDown(self):
         self.folder.cleanup()
+
+    def expect_changes_of_the_study(self, solver, environment):
+        """Loss tangent, port impedance, one boundary: each reaches the solver and does what the formula says."""
+        def line(**more):
+            _, s, wanted = cases.tem_line(self.out, 10, hz=1e9, solver=solver, environment=environment, **more)
+            return s, wanted
+
+        s, wanted = line()
+        self.assertLess(abs(s[1][0] - wanted[1]), 1e-3)
+        lossy, wanted = line(tan_delta=0.05)
+        self.assertLess(abs(lossy[1][0] - wanted[1]), 1e-3)
+        self.assertLess(abs(lossy[1][0]), 0.91)
+        mismatched, wanted = line(ohm_factor=2)
+        self.assertLess(abs(mismatched[0][0] - wanted[0]), 1e-3)
+        self.assertGreater(abs(mismatched[0][0]), 0.2)
+        walled, _ = line(boundaries={"all": "none", "ymin": "pec", "ymax": "pec"})
+        self.assertLess(abs(walled[1][0]), 1e-3)

@@ -28,6 +28,12 @@ struct Contact {
 /// Place near which two edges of one ring cross in their interiors, or nullopt. Exact; touches do not count.
 [[nodiscard]] std::optional<Point> self_crossing(const Ring& ring);
 
+/// How often a ring runs round a point, exact; of a point on the ring itself it says little. @cost O(points).
+[[nodiscard]] int winding_number(const Ring& ring, Point p) noexcept;
+
+/// Of a point from the segment a-b, in nm; a may equal b.
+[[nodiscard]] double distance_to_segment(Point p, Point a, Point b) noexcept;
+
 /// +1 inside (non-zero winding), 0 on the boundary, -1 outside. Exact. @cost O(n).
 [[nodiscard]] int location(Point p, const Ring& ring) noexcept;
 
